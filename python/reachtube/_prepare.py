@@ -29,6 +29,7 @@ def prepare(
     gains: npt.ArrayLike | None = None,
     joints: Sequence[str] | None = None,
     compensate: bool = False,
+    torque: str | None = None,
     columns: Mapping[str, str | int] | None = None,
     max_gap: float | None = None,
 ) -> Recordings:
@@ -60,6 +61,9 @@ def prepare(
     compensate
         Whether the torque becomes the input u: motor torque less the robot's gravity and dry
         friction, for ``torque="compensated"``.
+    torque
+        What the recorded torques are where they are compensated: ``"motor"``, the default, or
+        ``"link"`` for torques behind the gear, to which is added what the motors' inertia takes.
     columns
         Columns of logs whose names do not tell, by the keys ``q``, ``qd``, ``tau``, ``current``,
         ``time``, ``first``, ``time_unit`` and ``angle``, such as ``{"q": "pos_{}", "first": 0}``.
@@ -99,6 +103,8 @@ def prepare(
     settings.pop("window", None)
     if gains is not None:
         settings["gains"] = numbers("gains", gains).ravel().tolist()
+    if torque is not None:
+        settings["torque"] = torque
     if columns is not None:
         settings["columns"] = dict(columns)
     paths, runs = native_of_logs(data)

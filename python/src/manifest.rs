@@ -21,6 +21,7 @@ pub(crate) fn entry(row: &Entry) -> RunEntry {
         temperature,
         sha256,
         simulated: false,
+        noise: None,
         order,
         line: index + 1,
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use reachtube::Robot;
 use reachtube::identify::prepare::{
-    LogEntry, PrepareSettings, RawLog, cut_off, prepare as prepared, read, windows,
+    LogEntry, PrepareSettings, RawLog, cut_off, noise_left, prepare as prepared, read, windows,
 };
 use reachtube::recordings::{MemoryRuns, any_simulated};
 
@@ -69,6 +69,7 @@ fn cut(
     let prepared = prepared(&raw, settings, cut_off, compensate.then_some(robot))?;
     let mut cut = windows(&prepared.logs, window, repeats);
     cut.simulated = any_simulated(raw.iter().map(|log| &*log.file));
+    cut.noise = noise_left(&raw.iter().collect::<Vec<&RawLog>>(), Some(cut_off));
     let runs = cut.runs();
     if cut.windows.is_empty() {
         let what = match window {

@@ -11,6 +11,7 @@ use crate::model::file::Model;
 use crate::next_motion::growth::Growth;
 use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
+use crate::plausibility::friction_warning;
 use crate::result::code::Code;
 use crate::result::finding::Finding;
 use crate::tube::tube::Tube;
@@ -111,6 +112,7 @@ impl Check {
         let mut noted: Vec<Finding> =
             recordings.notes.iter().map(|note| Finding::recordings(note)).collect();
         noted.extend(is_used.is_none().then(|| Finding::use_unknown(model.data.are_listed())));
+        noted.extend(friction_warning(problem).as_ref().map(Finding::from));
         let starts_elsewhere =
             recordings.suites.iter().filter(|suite| !may_start_near(model, suite));
         noted.extend(starts_elsewhere.map(|suite| Finding::other_start(&suite.entry.name)));
@@ -157,7 +159,7 @@ impl Check {
         });
         findings.extend(self.rates.as_ref().map(Finding::held_out_rates));
         findings.extend(Finding::reach_of_proof(verdict, model.settings.states));
-        let noted = [Code::Recordings, Code::UseUnknown, Code::OtherStart];
+        let noted = [Code::Recordings, Code::UseUnknown, Code::FrictionRange, Code::OtherStart];
         findings.extend(self.findings.into_iter().filter(|f| noted.contains(&f.code)));
         self.findings = findings;
         self

@@ -149,7 +149,8 @@ fn conform_claim(
         None => Vec::new(),
     };
     let fit = NominalFit::new(problem)?;
-    let warnings = warnings(problem, &tube.sets, &radii, &fit, calibration.as_ref())?;
+    let input_error = InputError::of_problem(problem)?;
+    let warnings = warnings(problem, &tube.sets, &radii, &fit, &input_error, calibration.as_ref())?;
     let is_smallest = calibration.is_none() && !problem.settings().notion.asks_points();
     Ok(Conformance {
         sets: tube.sets.clone(),
@@ -170,7 +171,7 @@ fn conform_claim(
         search,
         tight,
         explanations,
-        input_error: InputError::of_problem(problem)?,
+        input_error,
         any_run: if problem.settings().calibrate.is_empty() { AnyRun::new(problem)? } else { None },
         tube,
     })

@@ -1,5 +1,6 @@
 use crate::error::Result;
 use crate::fitted::{Fitted, Plausibility};
+use crate::friction::falling::FallingFriction;
 use crate::friction::fit::FrictionFit;
 use crate::gravity::fit::GravityFit;
 use crate::inertia::description::friction_errors;
@@ -19,8 +20,7 @@ use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
 use crate::variant::with_gravity_of_links;
 use crate::warming::choice::WarmingFit;
 use crate::warming::laws::{fit_warming, law_warnings};
-use reachtube_robot::friction::Warming;
-use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
+use reachtube_robot::{FrictionDescription, Parameter, ParameterKind, Robot, RobotDescription};
 use std::path::Path;
 
 /// Number of steps that progress reports.
@@ -88,6 +88,7 @@ pub fn identify(
     let model = &settings.model;
     // Recordings, filtered and downsampled.
     let mut inputs = Inputs::read(robot, settings, folder)?;
+    let given = robot.description();
     let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
     progress(1, STEPS);
 
@@ -104,20 +105,19 @@ pub fn identify(
     let law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
     let gain_warnings = laws.iter().flat_map(|laws| laws.warnings(robot)).collect();
     let Fitted { first, friction, known, inertia, mut description, found } = fitted;
-    add_friction(&mut description, &inputs.sampling.laws, &friction, &first.friction, &inertia);
+    add_friction(&mut description, &inputs, &friction, &first.friction, &inertia);
     let warming_robot = Robot::from_description(&description)?;
     progress(3, STEPS);
 
-    // Validation and plausibility.
     let (held_out, tried) = inputs.validation();
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
     let windows = simulate(&warming_robot, tried, &model.windows);
     let mut warnings = [inputs.warnings, first.warnings, law_warnings, gain_warnings].concat();
     warnings.extend(implausible.iter().map(|result| result.text.clone()));
-    warnings.extend(inertia.undetermined_warning());
-    warnings.extend(inertia.body_warnings(robot));
+    warnings.extend(inertia_warnings(&first.friction, &inertia, robot));
     let links = inertia.physical.is_some() && !model.separate_gravity;
     warnings.extend(validation_warnings(robot, &validation, &windows, held_out, links));
+    keep_motors(&mut description, given, model);
     progress(STEPS, STEPS);
     Ok(Identification {
         description,
@@ -137,6 +137,20 @@ pub fn identify(
         warnings,
         implausible,
     })
+}
+
+/// Gives a description the motors of the given one if torque was measured behind the gear, which
+/// does not show their inertia: it takes part in the motion.
+fn keep_motors(
+    description: &mut RobotDescription,
+    given: &RobotDescription,
+    model: &ModelSettings,
+) {
+    let pairs = description.joints.iter_mut().zip(&given.joints);
+    for (joint, given) in pairs.filter(|_| !model.motor_inertia) {
+        joint.armature = given.armature;
+        joint.rotor_inertia = given.rotor_inertia;
+    }
 }
 
 /// Fits the friction laws that `model` asks for beyond `plain`, and everything anew with the ones
@@ -161,15 +175,16 @@ fn fit_laws(
     Ok((warming, laws))
 }
 
-/// Writes the laws of warming up and the standard errors of friction into the description.
+/// Writes the laws of warming up, the standard errors of friction, and the velocities that it was
+/// fitted to into the description.
 fn add_friction(
     description: &mut RobotDescription,
-    laws: &[Option<Warming>],
+    inputs: &Inputs,
     friction: &[FrictionDescription],
     slow: &[FrictionFit],
     inertia: &InertiaFit,
 ) {
-    for (joint, law) in description.joints.iter_mut().zip(laws) {
+    for (joint, law) in description.joints.iter_mut().zip(&inputs.sampling.laws) {
         joint.friction.warming = *law;
     }
     for (j, joint) in description.joints.iter_mut().enumerate() {
@@ -177,7 +192,27 @@ fn add_friction(
         let slow = slow.iter().find(|fit| fit.joint.joint == joint.name && is_known);
         let known = slow.map(|fit| &fit.joint.standard_errors);
         joint.friction.standard_errors = friction_errors(inertia, j, known);
+        let logs = inputs.friction.iter().filter(|_| is_known);
+        let is_fitted = inertia
+            .columns
+            .iter()
+            .any(|column| *column == Parameter { joint: j, kind: ParameterKind::Viscous1 });
+        let logs = logs.chain(inputs.dynamic.iter().filter(|_| is_fitted));
+        let all = logs.flat_map(|log| log.qd.iter().skip(j).step_by(log.joints));
+        let range = all.fold([0.0f64; 2], |[low, high], qd| [low.min(*qd), high.max(*qd)]);
+        joint.friction.fitted_velocities = (range != [0.0; 2]).then_some(range);
     }
+}
+
+/// Returns warnings about the inertial parameters, and one for each joint whose viscous friction by
+/// least squares falls with speed: in the exciting motions, or else in the slow ones.
+fn inertia_warnings(slow: &[FrictionFit], inertia: &InertiaFit, robot: &Robot) -> Vec<String> {
+    let of_slow = slow.iter().filter_map(|fit| fit.joint.falling.as_ref());
+    let is_new =
+        |slow: &&FallingFriction| inertia.falling.iter().all(|falling| falling.joint != slow.joint);
+    let falling = of_slow.filter(is_new).chain(&inertia.falling).map(|of| of.warning(robot));
+    let open = inertia.undetermined_warning().into_iter();
+    open.chain(inertia.body_warnings(robot)).chain(falling).collect()
 }
 
 /// Returns warnings about the validation. Only held-out recordings show how well torque is

@@ -101,6 +101,7 @@ impl Inputs {
             slow: slow_speeds(&moving, robot.joint_count(), model.slow),
             margin,
             laws: vec![],
+            velocities: velocities(&moving, robot.joint_count()),
         };
         notes.extend(described_changes(samples, &changes, prepare, cut_off));
         let mut changes = notes;
@@ -189,6 +190,15 @@ fn described(sampling: &Sampling, is_thinned: bool, robot: &Robot) -> String {
         slow.join(", "),
         JointKind::units(&robot.kinds(), JointKind::velocity_unit)
     )
+}
+
+/// Returns the lowest and the highest velocity of each joint \[rad/s\].
+fn velocities(moving: &[&PreparedLog], joints: usize) -> Vec<[f64; 2]> {
+    let of_joint = |joint: usize| {
+        let all = moving.iter().flat_map(|log| log.qd.iter().skip(joint).step_by(joints));
+        all.fold([0.0f64; 2], |[low, high], qd| [low.min(*qd), high.max(*qd)])
+    };
+    (0..joints).map(of_joint).collect()
 }
 
 /// Returns the speed limit of slow samples \[rad/s\] for each joint: the one given, or else 2 % of

@@ -69,13 +69,14 @@ mod warming;
 
 pub use error::{Error, Result};
 pub use fit::{Fit, JointFit};
+pub use friction::falling::FallingFriction;
 pub use friction::fit::{FrictionFit, JointFriction};
 pub use friction::form::CoulombForm;
 pub use friction::sample::FrictionSample;
 pub use friction::stribeck::StribeckTrial;
 pub use gravity::GravityFit;
 pub use identification::{Identification, identify};
-pub use inertia::{BaseParameter, InertiaFit, PhysicalFit};
+pub use inertia::{BaseParameter, InertiaFit, JointInertia, PhysicalFit};
 pub use law_gain::LawGain;
 pub use plausibility::{Gain, Implausible, PositionOffset};
 pub use regression::solution::Solution;

@@ -12,6 +12,10 @@ use std::ops::Range;
 /// they tell nothing new.
 const MOST_SAMPLES: usize = 30_000;
 
+/// Speed up to which friction must rise without a velocity limit of the robot, in parts of the
+/// highest recorded speed.
+const BEYOND_RECORDED: f64 = 2.0;
+
 /// Shortest rest that counts as a pose \[s\].
 pub(crate) const SHORTEST_REST: f64 = 0.5;
 
@@ -53,9 +57,24 @@ pub(crate) struct Sampling {
     pub margin: f64,
     /// Laws by which friction changes while the joints warm up, n entries; empty for none.
     pub laws: Vec<Option<Warming>>,
+    /// Lowest and highest velocity of each joint in slow and in exciting motions \[rad/s\].
+    pub velocities: Vec<[f64; 2]>,
 }
 
 impl Sampling {
+    /// Returns the speed up to which the friction of a joint must rise \[rad/s\]: the velocity
+    /// limit of the robot, or else twice the highest speed of the recordings.
+    pub(crate) fn velocity_limit(&self, robot: &Robot, joint: usize) -> f64 {
+        let [low, high] = self.velocities.get(joint).copied().unwrap_or_default();
+        let (known, reached) = (robot.joints()[joint].velocity_limit, high.max(-low));
+        known.map_or(BEYOND_RECORDED * reached, |limit| limit.max(reached))
+    }
+
+    /// Returns the speeds up to which the friction of the joints must rise \[rad/s\].
+    pub(crate) fn velocity_limits(&self, robot: &Robot) -> Vec<f64> {
+        (0..robot.joint_count()).map(|joint| self.velocity_limit(robot, joint)).collect()
+    }
+
     /// Returns the number of samples of a log from one that is used to the next.
     pub(crate) fn stride(&self, log: &PreparedLog) -> usize {
         (1.0 / (self.rate * log.step)).floor().max(1.0) as usize

@@ -75,7 +75,8 @@ pub struct ModelSettings {
     pub robust: bool,
     /// Whether the links must be physically consistent.
     ///
-    /// By default they must, unless the description has `parameters = "base"`.
+    /// By default they must, unless the description has `parameters = "base"` and the torque
+    /// drives the motors' inertia.
     pub physical: Option<bool>,
     /// Prior of the links in directions that the recordings do not determine.
     pub prior: Prior,

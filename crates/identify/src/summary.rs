@@ -1,7 +1,9 @@
 use crate::fit::JointFit;
+use crate::friction::falling::FallingFriction;
 use crate::friction::fit::JointFriction;
 use crate::gravity::fit::GravityFit;
 use crate::identification::Identification;
+use crate::inertia::JointInertia;
 use crate::inertia::base::BaseParameter;
 use crate::inertia::physical::PhysicalFit;
 use crate::law_gain::LawGain;
@@ -34,8 +36,14 @@ pub struct Summary<'a> {
     pub determined: usize,
     /// Condition number of the recorded motions, relative to a motion through all positions.
     pub condition: f64,
+    /// The inertia that each joint feels, with its standard error.
+    pub diagonal: &'a [JointInertia],
     /// Effect of the constraint that every link is physically consistent.
     pub physical: &'a Option<PhysicalFit>,
+    /// Viscous friction of least squares that falls with speed and was not used, of the fit to
+    /// exciting motions.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub falling: &'a [FallingFriction],
     /// Gains of the joints' torques relative to each other.
     pub gains: &'a [Gain],
     /// Offsets of the joints' positions that explain the torque best; empty for too few samples.
@@ -70,7 +78,9 @@ impl Identification {
             parameters: &self.inertia.parameters,
             determined: self.inertia.determined,
             condition: self.inertia.condition,
+            diagonal: &self.inertia.diagonal,
             physical: &self.inertia.physical,
+            falling: &self.inertia.falling,
             gains: &self.gains,
             offsets: &self.offsets,
             warming: &self.warming,

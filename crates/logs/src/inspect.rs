@@ -148,6 +148,7 @@ fn entry(path: &Path, line: u64, content: &Content) -> RunEntry {
         temperature: None,
         sha256: None,
         simulated: false,
+        noise: None,
         order: line,
         line,
     }

@@ -6,21 +6,19 @@ use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
-use crate::choices::{Choice, Choices};
+use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_RATIO};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
 use crate::findings::unless_accepted;
 use crate::held_out::Split;
 use crate::horizon::{HorizonWidths, longest, try_horizons};
+use crate::motors::unknown_motors;
 use crate::noise::noise;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::Sorted;
 use crate::trial::Trial;
 use crate::windows::Prepared;
-
-/// Half a joint's set by the joint's displacement that is accepted by default.
-const LARGEST_RATIO: f64 = 0.5;
 
 /// A model made of logs, the choices behind it, and what motions that were held out say of it.
 #[derive(Debug)]
@@ -48,26 +46,6 @@ pub struct Built {
     pub shown_held_out: MemoryRuns,
 }
 
-impl Built {
-    /// Returns whether the sets were proved to enclose every window, limit every joint, and
-    /// are narrow enough at the horizon, and nothing contradicts the recordings.
-    #[must_use]
-    pub fn is_useful(&self) -> bool {
-        let model = &self.answer.model;
-        let worst = model.usefulness.as_ref().and_then(|said| said.worst());
-        let is_sound = self.contradiction().is_none();
-        is_sound
-            && model.is_useful()
-            && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
-    }
-
-    /// Returns half a joint's set by the joint's displacement that is accepted at most.
-    #[must_use]
-    pub fn largest_ratio(&self) -> f64 {
-        self.choices.largest_ratio.unwrap_or(LARGEST_RATIO)
-    }
-}
-
 /// Makes a model of the recordings that `given` names, and compares it with motions that are held
 /// out. `say` takes each choice when it is made; `progress` may cancel the job.
 ///
@@ -84,7 +62,7 @@ pub fn build(
     progress: &dyn Progress,
 ) -> Result<Built> {
     let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
-    let settings = given.prepare_settings();
+    let settings = PrepareSettings { torque: Some(torque), ..given.prepare_settings() };
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     chooser.choose_held_out(&split);
@@ -107,6 +85,7 @@ pub fn build(
     chooser.choose("identify", is_identified.to_string(), reason);
     chooser.choices.identify = Some(is_identified);
     trial.robot = robot.clone();
+    warnings.extend(unknown_motors(&robot, torque));
 
     // The horizon and the sets.
     let motions = motion_names(&split);
@@ -188,6 +167,7 @@ fn sets(
 ) -> Result<(Answer, Vec<HorizonWidths>)> {
     let largest = chooser.choices.largest_ratio.unwrap_or(LARGEST_RATIO);
     chooser.choices.largest_ratio = Some(largest);
+    chooser.choices.largest_growth.get_or_insert(LARGEST_GROWTH);
     let mut horizons = choose_equations(chooser, trial, recordings, largest)?;
     let groups = chooser.choices.fit.clone().unwrap_or_default();
     let pull = chooser.choices.pull;

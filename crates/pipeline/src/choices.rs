@@ -13,6 +13,12 @@ use crate::error::{Error, Result};
 /// What the comment with the digest of the values begins with.
 const DIGEST: &str = "the reasons belong to the values with the digest ";
 
+/// Half a joint's set by the joint's displacement that is accepted by default.
+pub(crate) const LARGEST_RATIO: f64 = 0.5;
+
+/// The factor by which a joint's set may have to grow for motions that were held out, by default.
+pub(crate) const LARGEST_GROWTH: f64 = 2.0;
+
 /// Largest number of columns of a comment.
 const COLUMNS: usize = 96;
 
@@ -52,6 +58,10 @@ pub struct Choices {
     /// The largest accepted ratio of half a joint's set at the horizon to the joint's displacement.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_ratio: Option<f64>,
+    /// The largest accepted factor by which the set of a joint would have to grow for motions that
+    /// are held out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_growth: Option<f64>,
     /// Time up to which the model predicts, s: the length of the windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horizon: Option<f64>,
@@ -162,6 +172,7 @@ impl Choices {
             expansion: given.expansion.or(self.expansion),
             sensor_noise: given.sensor_noise.or(self.sensor_noise),
             largest_ratio: given.largest_ratio.or(self.largest_ratio),
+            largest_growth: given.largest_growth.or(self.largest_growth),
             horizon: given.horizon.or(self.horizon),
             fit: given.fit.or(self.fit),
             pull: given.pull.or(self.pull),

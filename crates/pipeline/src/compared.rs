@@ -121,6 +121,8 @@ fn growth(check: &Check, joints: usize) -> Vec<f64> {
         let own = &mut growth[worst.state.joint];
         *own = own.max(factor);
     }
+    // No factor encloses what follows a nominal motion that ran away.
+    check.verdict.lost.iter().for_each(|lost| growth[lost.state.joint] = f64::INFINITY);
     growth
 }
 

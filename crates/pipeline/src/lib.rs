@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod acceptance;
 mod build;
 mod choices;
 mod chooser;
@@ -12,6 +13,7 @@ mod held_out;
 mod horizon;
 mod joint_row;
 mod kinds;
+mod motors;
 mod noise;
 mod plausible;
 mod prepared;

@@ -21,6 +21,7 @@ pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> 
     let robot = Robot::from_description(&model.robot)?;
     let settings = PrepareSettings {
         gains: gains.clone(),
+        torque: Some(*torque),
         columns: columns.clone(),
         log: log.clone(),
         ..PrepareSettings::default()

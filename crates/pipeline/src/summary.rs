@@ -21,7 +21,7 @@ impl Built {
             (true, true, _) => format!("conformant and useful up to {horizon} s"),
             (true, false, true) => format!("conformant, but vacuous at {horizon} s"),
             (true, false, false) => {
-                format!("conformant, but too wide to be of use at {horizon} s")
+                format!("conformant, but {} at {horizon} s", self.why_useless())
             }
         };
         let (windows, what) = (model.data.run_count(), self.unit());

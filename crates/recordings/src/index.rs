@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 
 use crate::defect::Defect;
 use crate::order::{WrittenOrder, orders};
@@ -29,6 +30,9 @@ pub struct RunEntry {
     pub sha256: Option<String>,
     /// Whether the recording is marked as simulated, and not measured.
     pub simulated: bool,
+    /// Standard deviations of the sensors' noise in each state that the recording has left, 2n, rad
+    /// and rad/s; where they were measured before a filter, which takes away what shows them.
+    pub noise: Option<Vec<f64>>,
     /// Place in the order in which the runs of the suite were recorded, from 1.
     pub order: u64,
     /// Line in `runs.csv`, or number of a run in memory, from 1.
@@ -44,8 +48,21 @@ struct IndexRow {
     temperature: Option<f64>,
     sha256: Option<String>,
     simulated: Option<bool>,
+    #[serde(default, deserialize_with = "noise")]
+    noise: Option<Vec<f64>>,
     order: Option<String>,
     repeat: Option<String>,
+}
+
+/// Reads numbers between spaces, of which none is below 0.
+fn noise<'de, D: Deserializer<'de>>(field: D) -> Result<Option<Vec<f64>>, D::Error> {
+    let text = Option::<String>::deserialize(field)?.unwrap_or_default();
+    let number = |word: &str| match word.parse::<f64>() {
+        Ok(number) if number >= 0.0 && number.is_finite() => Ok(number),
+        _ => Err(D::Error::custom(format!("{word:?} is no number of at least 0"))),
+    };
+    let numbers: Vec<f64> = text.split_whitespace().map(number).collect::<Result<_, _>>()?;
+    Ok((!numbers.is_empty()).then_some(numbers))
 }
 
 impl IndexRow {
@@ -59,6 +76,7 @@ impl IndexRow {
             temperature: self.temperature,
             sha256: filled(self.sha256),
             simulated: self.simulated.unwrap_or(false),
+            noise: self.noise,
             order,
             line,
         }

@@ -48,6 +48,7 @@ impl MemoryRuns {
             temperature: None,
             sha256: None,
             simulated: false,
+            noise: None,
             order: latest + 1,
             line: self.entries.len() as u64 + 1,
         });

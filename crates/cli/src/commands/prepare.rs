@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::identify::prepare::{
-    LogEntry, PrepareSettings, PreparedLog, RawLog, cut_off, prepare, read, windows,
+    LogEntry, PrepareSettings, PreparedLog, RawLog, cut_off, noise_left, prepare, read, windows,
 };
-use reachtube::recordings::{ColumnSettings, any_simulated};
+use reachtube::recordings::{ColumnSettings, Torque, any_simulated};
 use serde_json::json;
 
 use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
-use crate::option_values::{hertz, seconds};
+use crate::option_values::{Choices, choice, hertz, seconds};
 use crate::outcome::Outcome;
 use crate::output;
 
@@ -21,6 +21,12 @@ Example:
       --compensate --out windows
 
 Then: reachtube inspect --data windows";
+
+/// The torques that can be compensated.
+const TORQUES: Choices = &[
+    ("motor", "motor torque at the output side of the gear"),
+    ("link", "link-side torque, to which is added what the motor's inertia takes"),
+];
 
 /// Filter recordings, cut them into windows, and write them as test suites
 ///
@@ -59,6 +65,10 @@ pub(crate) struct Arguments {
     /// place of the torque; read it with `--torque compensated`
     #[arg(long)]
     pub compensate: bool,
+    /// Meaning of the recorded torques where they are compensated: to link-side torques, what the
+    /// motors' inertia takes is added by the measured acceleration [default: motor]
+    #[arg(long, value_parser = choice::<Torque>(TORQUES))]
+    pub torque: Option<Torque>,
     /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
     /// also first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
@@ -86,6 +96,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let prepared = prepare(&raw, &settings, cut_off, args.compensate.then_some(&robot))?;
     let mut cut = windows(&prepared.logs, args.window, args.repeats);
     cut.simulated = any_simulated(raw.iter().map(|log| &*log.file));
+    cut.noise = noise_left(&raw.iter().collect::<Vec<&RawLog>>(), Some(cut_off));
     if cut.windows.is_empty() {
         return Err(nothing_left(args, &prepared.logs));
     }
@@ -121,6 +132,7 @@ fn settings(args: &Arguments) -> PrepareSettings {
         joints: args.joints.clone(),
         cut_off: args.cut_off,
         max_gap: args.max_gap,
+        torque: args.torque,
         columns: args.columns.clone().unwrap_or_default(),
         ..PrepareSettings::default()
     }

@@ -161,7 +161,7 @@ impl Verdict {
             points,
             traces,
             largest_excess: if largest_excess.is_finite() { largest_excess } else { 0.0 },
-            lost: tube.lost().cloned().collect(),
+            lost: tube.lost(problem)?,
             suites,
         })
     }

@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::stored::{grid, values};
 
+/// Accelerations are differences of velocities over at least this time to both sides, s.
+const SPAN: f64 = 0.02;
+
 /// The sample times of a run and the input u along it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunInput {
@@ -43,6 +46,9 @@ impl RunInput {
         for k in 0..run.len() {
             inputs.extend(torque.input(robot, run.q(k), run.qd(k), run.torque(k)));
         }
+        if torque == Torque::Link {
+            add_motor_inertia(run, robot, &mut inputs);
+        }
         Ok(Self { grid: Arc::new(grid), inputs: inputs.into() })
     }
 
@@ -58,6 +64,26 @@ impl RunInput {
             if self.grid.len() <= other.grid.len() { (self, other) } else { (other, self) };
         let acting = short.grid.len().saturating_sub(1) * joints;
         short.inputs[..acting] == long.inputs[..acting] && short.grid.is_prefix_of(&long.grid)
+    }
+}
+
+/// Adds to inputs from torques behind the gear what the motors' inertia takes, J q̈, which their
+/// sensors do not measure. The model has this inertia. The acceleration is the difference of the
+/// velocities over at least [`SPAN`] to both sides.
+fn add_motor_inertia(run: &Run, robot: &Robot, inputs: &mut [f64]) {
+    let inertia: Vec<f64> = robot.joints().iter().map(|joint| joint.armature).collect();
+    let (times, last) = (&run.times, run.len().saturating_sub(1));
+    if last == 0 || inertia.iter().all(|inertia| *inertia == 0.0) {
+        return;
+    }
+    for (k, inputs) in inputs.chunks_exact_mut(run.joints).enumerate() {
+        let before = times.partition_point(|time| *time < times[k] - SPAN).min(k.max(1) - 1);
+        let after = times.partition_point(|time| *time < times[k] + SPAN).min(last);
+        let duration = times[after] - times[before];
+        for (joint, u) in inputs.iter_mut().enumerate() {
+            let change = run.qd(after)[joint] - run.qd(before)[joint];
+            *u += inertia[joint] * change / duration;
+        }
     }
 }
 

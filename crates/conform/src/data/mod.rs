@@ -13,6 +13,7 @@ mod notes;
 pub(crate) mod origin;
 pub(crate) mod problem;
 pub(crate) mod recordings;
+pub(crate) mod runaway;
 pub(crate) mod sensor_noise;
 pub mod settings;
 pub(crate) mod setup;

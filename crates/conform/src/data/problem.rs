@@ -11,6 +11,7 @@ use crate::data::kept::KeptRuns;
 use crate::data::notes::recording_notes;
 use crate::data::origin::Origin;
 use crate::data::recordings::Recordings;
+use crate::data::runaway::Runaway;
 use crate::data::sensor_noise::SensorNoise;
 use crate::data::settings::Settings;
 use crate::data::setup::{Setup, read_options, side};
@@ -62,7 +63,16 @@ pub struct Problem {
     pub(crate) read: Arc<Read>,
     grids: OnceLock<Grids>,
     pub(crate) cases: OnceLock<Vec<Case>>,
-    deviations: OnceLock<Vec<Deviation>>,
+    deviations: OnceLock<Deviations>,
+}
+
+/// The deviations of all suites from nominal motions of a linear model.
+#[derive(Debug)]
+pub(crate) struct Deviations {
+    /// The deviations. They are infinite after a nominal motion ran away.
+    pub all: Vec<Deviation>,
+    /// Where nominal motions run away.
+    pub runaways: Vec<Runaway>,
 }
 
 /// What was read of the recordings. It does not depend on the model.
@@ -197,6 +207,22 @@ impl Problem {
         self.read.origin.entry(index)
     }
 
+    /// Returns the lowest and the highest recorded value of state `i`.
+    pub(crate) fn recorded_bounds(&self, i: usize) -> [f64; 2] {
+        let envelopes = self.recordings().suites.iter().map(|suite| &suite.envelope);
+        let samples =
+            envelopes.flat_map(|envelope| (0..envelope.len()).map(move |k| (envelope, k)));
+        samples.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (envelope, k)| {
+            [low.min(envelope.lower(k, i)), high.max(envelope.upper(k, i))]
+        })
+    }
+
+    /// Returns the highest recorded speed of a joint, rad/s.
+    pub(crate) fn highest_speed(&self, joint: usize) -> f64 {
+        let [low, high] = self.recorded_bounds(self.joints() + joint);
+        high.max(-low)
+    }
+
     /// Returns whether a recording of the source is marked as simulated.
     #[must_use]
     pub fn is_simulated(&self) -> bool {
@@ -262,15 +288,42 @@ impl Problem {
     ///
     /// # Errors
     ///
-    /// As [`grids`](Self::grids) and [`run`](Self::run).
+    /// As [`grids`](Self::grids) and [`run`](Self::run); [`Error::RunsAway`] if a nominal motion
+    /// runs away.
     pub(crate) fn deviations(&self) -> Result<&[Deviation]> {
+        let Deviations { all, runaways } = self.deviations_until()?;
+        match runaways.first() {
+            None => Ok(all),
+            Some(Runaway { case, time, .. }) => {
+                Err(Error::RunsAway { case: case.clone(), time: *time })
+            }
+        }
+    }
+
+    /// Returns the deviations of all suites, and where nominal motions run away: deviations are
+    /// infinite from there on, so that no set encloses them.
+    ///
+    /// # Errors
+    ///
+    /// As [`grids`](Self::grids) and [`run`](Self::run).
+    pub(crate) fn deviations_until(&self) -> Result<&Deviations> {
         if let Some(deviations) = self.deviations.get() {
             return Ok(deviations);
         }
         let grids = self.grids()?;
-        let of = |suite| self.cases_of(suite, |case| Ok(Deviation::new(grids, &case)));
+        let of_case = |case, runaway: Option<Runaway>| {
+            let deviation = Deviation::new(grids, &case);
+            Ok(match &runaway {
+                Some(at) => (deviation.lost_after(at.sample), runaway),
+                None => (deviation, None),
+            })
+        };
+        let of = |suite| self.cases_until(suite, of_case);
         let suites = (0..self.read.recordings.suites.len()).map(of).collect::<Result<Vec<_>>>()?;
-        Ok(self.deviations.get_or_init(|| Deviation::merge(suites.into_iter().flatten())))
+        let (all, runaways): (Vec<_>, Vec<_>) = suites.into_iter().flatten().unzip();
+        let runaways = runaways.into_iter().flatten().collect();
+        let merged = || Deviations { all: Deviation::merge(all), runaways };
+        Ok(self.deviations.get_or_init(merged))
     }
 }
 

@@ -36,7 +36,8 @@ pub struct RunSummary {
     /// SHA-256 of the recording.
     pub sha256: String,
     /// The standard deviation of the noise in each state, 2n, as
-    /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it.
+    /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it, and at least what
+    /// was measured before a filter.
     pub noise: Option<Vec<f64>>,
     /// What a user should know about the run.
     pub notes: Vec<String>,
@@ -55,7 +56,7 @@ impl RunSummary {
             marks: Marks::new(run),
             condition: Condition::of(entry.order, run),
             sha256: run.sha256.clone(),
-            noise: noise_deviations(run),
+            noise: noise(entry, run),
             notes: run_notes(entry, run),
         }
     }
@@ -69,6 +70,18 @@ impl RunSummary {
             && self.marks.is_valid_for(dimension)
             && self.noise.as_ref().is_none_or(|noise| noise.len() == dimension)
             && temperatures.is_none_or(|all| 2 * all.len() == dimension)
+    }
+}
+
+/// Returns the noise that a recording shows, and at least the noise that its entry knows.
+fn noise(entry: &RunEntry, run: &Run) -> Option<Vec<f64>> {
+    let shown = noise_deviations(run);
+    let known = entry.noise.as_ref().filter(|known| known.len() == 2 * run.joints);
+    match (known, shown) {
+        (Some(known), Some(shown)) => {
+            Some(known.iter().zip(shown).map(|(known, shown)| known.max(shown)).collect())
+        }
+        (known, shown) => known.cloned().or(shown),
     }
 }
 

@@ -68,7 +68,8 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     if data.motions.len() < 2 {
         return Err(Error::Fit(one_motion(kept.is_some())));
     }
-    let parameters = Parameters::new(setup, &settings.groups);
+    let speeds: Vec<f64> = (0..joints).map(|j| steering.highest_speed(j)).collect();
+    let parameters = Parameters::new(setup, &settings.groups, &speeds);
     if parameters.len() == 0 {
         return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
     }
@@ -87,7 +88,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let found = search(&fit, &settings.distinct_groups(), choice.pull)?;
     progress.finished(&format!("the fit took {} steps", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {
-        let own = Parameters::new(problem.setup(), &settings.groups);
+        let own = Parameters::new(problem.setup(), &settings.groups, &speeds);
         let mut setup = own.apply(&found.numbers)?;
         if setup.settings.weights == Weights::Spread {
             setup.settings.weights = Weights::Given(fit.weights.clone());
@@ -112,7 +113,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
 /// The cost has more than one local optimum. One search moves all groups from the beginning, and
 /// one for each group first the others; the best answer counts.
 fn search(fit: &FitTask, groups: &[Group], pull: f64) -> Result<FoundNumbers> {
-    let (start, tracks) = (vec![0.0; fit.parameters.len()], fit.tracks(None));
+    let (start, tracks) = (fit.parameters.start(), fit.tracks(None));
     let pull = pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
     let search = |tracks: &[usize], held, effort| {
         let tracks = tracks.to_vec();

@@ -15,6 +15,7 @@ pub(crate) mod group;
 pub(crate) mod parameters;
 pub(crate) mod pull;
 pub(crate) mod record;
+pub(crate) mod rising;
 pub(crate) mod search;
 pub(crate) mod slopes;
 pub(crate) mod step;

@@ -8,6 +8,7 @@ use crate::data::settings::Equations;
 use crate::data::setup::Setup;
 use crate::error::Result;
 use crate::fit::group::Group;
+use crate::fit::rising::{BEYOND_FITTED, RisingFriction};
 
 /// The number of inertial parameters of a link.
 const INERTIAL: usize = ParameterKind::INERTIAL.len();
@@ -51,6 +52,8 @@ pub(crate) struct Parameters<'a> {
     /// The inertial parameters of each link, 10 n.
     links: Vec<f64>,
     pub list: Vec<FreeParameter>,
+    /// Conditions on friction that could fall with speed.
+    pub rising: Vec<RisingFriction>,
 }
 
 /// Numbers of logarithms lie within this distance from 0: a factor of 10.
@@ -81,13 +84,14 @@ impl Quantity {
 }
 
 impl<'a> Parameters<'a> {
-    /// Lists the parameters of `groups` that the robot has.
-    pub(crate) fn new(setup: &'a Setup, groups: &[Group]) -> Self {
+    /// Lists the parameters of `groups` that the robot has. Without a velocity limit, friction must
+    /// rise up to twice the highest speed of each joint in the recordings, `speeds`, rad/s.
+    pub(crate) fn new(setup: &'a Setup, groups: &[Group], speeds: &[f64]) -> Self {
         let robot = &setup.robot;
         let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
         let inertia = mass_matrix.diagonal().iter().copied().collect();
         let (links, list) = (robot.inertial_parameters(), Vec::new());
-        let mut parameters = Self { setup, inertia, links, list };
+        let mut parameters = Self { setup, inertia, links, list, rising: Vec::new() };
         for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
             for joint in 0..robot.joint_count() {
                 let of_joint = parameters.of_joint(group, joint);
@@ -95,7 +99,26 @@ impl<'a> Parameters<'a> {
                 parameters.list.extend(of_joint.into_iter().map(make));
             }
         }
+        let rising = |(joint, speed): (usize, &f64)| {
+            let (viscous, limit) =
+                (robot.joints()[joint].friction.viscous, robot.joints()[joint].velocity_limit);
+            let limit = limit.map_or(BEYOND_FITTED * speed, |limit| limit.max(*speed));
+            let own = [viscous.v1, viscous.v2, viscous.v3];
+            let fitted = [Quantity::Viscous, Quantity::Cubic].map(|quantity| {
+                let is = |own: &Parameter| own.joint == joint && own.quantity == quantity;
+                parameters.list.iter().position(is)
+            });
+            RisingFriction::new(fitted, own, limit)
+        };
+        parameters.rising = speeds.iter().enumerate().filter_map(rising).collect();
         parameters
+    }
+
+    /// Returns the numbers that a fit starts from: the identified values, but friction that rises.
+    pub(crate) fn start(&self) -> Vec<f64> {
+        let mut numbers = vec![0.0; self.len()];
+        self.rising.iter().for_each(|condition| condition.start(&mut numbers));
+        numbers
     }
 
     /// Returns the identified model.

@@ -55,7 +55,7 @@ pub(crate) fn choose(fit: &FitTask, given: Option<f64>) -> Result<PullChoice> {
 /// sets of all motions; `None` if a nominal motion runs away.
 fn leave_out(fit: &FitTask, motion: usize, pulls: &[f64]) -> Result<Vec<Option<f64>>> {
     let tracks = fit.few_tracks(Some(motion), FEW);
-    let mut numbers = vec![0.0; fit.parameters.len()];
+    let mut numbers = fit.parameters.start();
     let identified = fit.smallest(&fit.model(&numbers, &tracks, None)?, &tracks)?.cost;
     let mut costs = Vec::new();
     for pull in pulls {

@@ -257,6 +257,7 @@ impl StepProgram<'_> {
             let (top, bottom) = (self.numbers[p] + self.trust, self.numbers[p] - self.trust);
             bounds.extend([0.0, 0.0, top.min(high), -bottom.max(low)]);
         }
+        self.keep_rising(&free, sets, &mut matrix, &mut bounds);
         let slopes = self.cost_slopes();
         let pull = self.pull.max(LEAST_PULL * total);
         let of_set = |(j, w): (usize, &f64)| {
@@ -272,6 +273,30 @@ impl StepProgram<'_> {
         let held: f64 = held.map(|p| pull * self.numbers[p].abs()).sum();
         let unknowns = found.iter().zip(&unit).map(|(x, unit)| x * unit).collect();
         Ok((unknowns, value * total - present + held))
+    }
+
+    /// Keeps friction rising with speed; the numbers of `free` are the unknowns from `first` on.
+    fn keep_rising(
+        &self,
+        free: &[usize],
+        first: usize,
+        matrix: &mut Triplets,
+        bounds: &mut Vec<f64>,
+    ) {
+        for condition in &self.fit.parameters.rising {
+            let (entries, mut bound) = condition.tangent(self.numbers);
+            let (mut own, place) = (Vec::new(), |p: usize| free.iter().position(|own| *own == p));
+            for (p, factor) in entries {
+                match place(p) {
+                    Some(at) => own.push((first + at, factor)),
+                    None => bound -= factor * self.numbers[p],
+                }
+            }
+            if !own.is_empty() {
+                matrix.row(own);
+                bounds.push(bound);
+            }
+        }
     }
 
     /// Deviation minus reach of a row after the parameters changed by `moved`.

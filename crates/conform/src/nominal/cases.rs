@@ -11,10 +11,11 @@ use crate::data::correction::InputCorrection;
 use crate::data::envelope::Envelope;
 use crate::data::input::RunInput;
 use crate::data::problem::Problem;
+use crate::data::runaway::Runaway;
 use crate::data::settings::NominalStart;
 use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::nominal::motion::Corrected;
 use crate::nominal::steps::LinearSteps;
 
@@ -123,19 +124,45 @@ impl Problem {
         Ok(Case { name, suite: index, run: Some(run), grid, inputs, start, measured, condition })
     }
 
+    /// Hands each case of suite `index` to `visit` as [`cases_of`](Self::cases_of) does, and where
+    /// its nominal motion runs away, if it does.
+    ///
+    /// # Errors
+    ///
+    /// As [`cases_of`](Self::cases_of), but no error where a linear model runs away.
+    pub(crate) fn cases_until<T: Send>(
+        &self,
+        index: usize,
+        visit: impl Fn(Case, Option<Runaway>) -> Result<T> + Sync,
+    ) -> Result<Vec<T>> {
+        let suite = &self.recordings().suites[index];
+        self.recorded_cases_of(suite, index, self.differs_by_run(), |case| {
+            let (case, runaway) = self.corrected_until(case)?;
+            visit(case, runaway)
+        })
+    }
+
     /// Takes the correction of the problem's model off the inputs of a case.
     fn corrected(&self, case: Case) -> Result<Case> {
+        match self.corrected_until(case)? {
+            (case, None) => Ok(case),
+            (_, Some(Runaway { case, time, .. })) => Err(Error::RunsAway { case, time }),
+        }
+    }
+
+    /// Takes the correction off the inputs of a case, up to where its nominal motion runs away.
+    fn corrected_until(&self, case: Case) -> Result<(Case, Option<Runaway>)> {
         let (robot, dynamics) = (self.robot(), self.dynamics());
         let none = InputCorrection::none(robot.joint_count());
         let correction = match &self.setup().correction {
             Some(correction) => correction,
             None if !self.setup().is_recorded_input() => &none,
-            None => return Ok(case),
+            None => return Ok((case, None)),
         };
         let model = Corrected { robot, dynamics, correction, settings: self.settings() };
         let steps =
             dynamics.linear_system().map(|system| LinearSteps::new(system, case.grid.times()));
-        let inputs = model.motion(&case, steps.as_ref())?.inputs.into();
-        Ok(Case { inputs, ..case })
+        let (motion, runaway) = model.motion_until(&case, steps.as_ref())?;
+        Ok((Case { inputs: motion.inputs.into(), ..case }, runaway))
     }
 }

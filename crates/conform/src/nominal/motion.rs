@@ -1,10 +1,12 @@
 use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, InitialValueProblem, Outcome};
+use reachtube_recordings::State;
 use reachtube_robot::Robot;
 
 use crate::data::case::Case;
 use crate::data::correction::InputCorrection;
 use crate::data::dynamics::Dynamics;
+use crate::data::runaway::Runaway;
 use crate::data::settings::{Equations, Settings};
 use crate::error::{Error, Result};
 use crate::nominal::corrector::Corrector;
@@ -41,6 +43,23 @@ impl Corrected<'_> {
     ///
     /// [`Error::RunsAway`](crate::Error::RunsAway).
     pub(crate) fn motion(&self, case: &Case, steps: Option<&LinearSteps>) -> Result<NominalMotion> {
+        match self.motion_until(case, steps)? {
+            (motion, None) => Ok(motion),
+            (_, Some(Runaway { case, time, .. })) => Err(Error::RunsAway { case, time }),
+        }
+    }
+
+    /// Simulates the nominal motion of a case as [`motion`](Self::motion) does. If the motion of a
+    /// linear model runs away, returns where; from there on its states and inputs are 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::RunsAway`](crate::Error::RunsAway) for a model that is not linear.
+    pub(crate) fn motion_until(
+        &self,
+        case: &Case,
+        steps: Option<&LinearSteps>,
+    ) -> Result<(NominalMotion, Option<Runaway>)> {
         let mut corrector =
             Corrector::new(self.robot, self.correction, self.settings, &case.condition)?;
         let mut equations = match self.settings.equations {
@@ -58,8 +77,8 @@ impl Corrected<'_> {
             }
         };
         match steps {
-            Some(steps) => linear(case, steps, correct),
-            None => polynomial(self.dynamics.polynomials(), case, correct),
+            Some(steps) => Ok(linear(case, steps, correct)),
+            None => Ok((polynomial(self.dynamics.polynomials(), case, correct)?, None)),
         }
     }
 }
@@ -68,7 +87,7 @@ fn linear(
     case: &Case,
     steps: &LinearSteps,
     mut correct: impl FnMut(&[f64], &mut [f64]),
-) -> Result<NominalMotion> {
+) -> (NominalMotion, Option<Runaway>) {
     let (n, samples) = (case.joints(), case.grid.len());
     let mut inputs = case.inputs.to_vec();
     let mut states = vec![0.0; samples * 2 * n];
@@ -79,10 +98,16 @@ fn linear(
         correct(x, u);
         steps.advance(k, x, u, &mut after[..2 * n]);
         if !after[..2 * n].iter().all(|x| x.abs() < BOUND) {
-            return Err(runs_away(case, case.grid.times()[k]));
+            let sizes = after[..2 * n].iter().map(|x| x.abs()).enumerate();
+            let (state, _) = sizes.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+            after.fill(0.0);
+            inputs[(k + 1) * n..].fill(0.0);
+            let (case, time) = (case.name.clone(), case.grid.times()[k]);
+            let runaway = Runaway { case, sample: k, time, state: State::from_index(state, n) };
+            return (NominalMotion { states, inputs }, Some(runaway));
         }
     }
-    Ok(NominalMotion { states, inputs })
+    (NominalMotion { states, inputs }, None)
 }
 
 fn polynomial(

@@ -35,8 +35,9 @@ pub(super) struct Evidence<'a> {
 struct Needed {
     time: f64,
     angle: f64,
-    /// The inputs and the viscous friction in them at the samples that are looked at, for each run.
-    runs: Vec<Vec<[Vec<f64>; 2]>>,
+    /// The inputs, and the viscous friction and the torques of the motors' inertia in them, at the
+    /// samples that are looked at, for each run.
+    runs: Vec<Vec<[Vec<f64>; 3]>>,
 }
 
 /// What recordings may mean instead of what was stated: each number as it is read.
@@ -114,12 +115,18 @@ impl<'a> Evidence<'a> {
                 continue;
             }
             let in_time = samples.places(run).take_while(|k| k + samples.half + lag < run.len());
-            for (k, [needed, viscous]) in in_time.zip(needed) {
+            for (k, [needed, viscous, motors]) in in_time.zip(needed) {
                 let recorded = self.recorded(run, hypothesis, k, samples.half, lag);
                 for (joint, sum) in sums.iter_mut().enumerate() {
-                    // Friction that is added to both sides distinguishes neither.
-                    let friction = if *torque == Torque::Link { viscous[joint] } else { 0.0 };
-                    let (a, b) = (needed[joint] - friction, recorded[joint] - friction);
+                    // Friction that is added to both sides distinguishes neither. Behind the gear,
+                    // the motors' inertia takes part in neither.
+                    let (a, b) = match torque {
+                        Torque::Link => {
+                            let of_links = needed[joint] - viscous[joint] - motors[joint];
+                            (of_links, recorded[joint] - viscous[joint])
+                        }
+                        Torque::Motor | Torque::Compensated => (needed[joint], recorded[joint]),
+                    };
                     sum[0] += (a - b) * (a - b);
                     sum[1] += a * a + b * b;
                 }
@@ -219,12 +226,14 @@ impl Needed {
                 let changes = run.qd(after).iter().zip(run.qd(before));
                 let qdd: Vec<f64> =
                     changes.map(|(after, before)| angle * (after - before) / duration).collect();
+                let motors = robot.joints().iter().zip(&qdd);
+                let motors = motors.map(|(joint, qdd)| joint.armature * qdd).collect();
                 let moving = match &inertia {
                     Some(inertia) => inertia * DVector::from_vec(qdd),
                     None => robot.motion_torque(&q, &qd, &qdd),
                 };
                 let viscous = robot.viscous_torque(&qd);
-                [(moving + &viscous).data.into(), viscous.data.into()]
+                [(moving + &viscous).data.into(), viscous.data.into(), motors]
             };
             samples.places(run).map(at).collect()
         };

@@ -4,11 +4,13 @@
 pub(crate) mod cause;
 mod causes;
 mod evidence;
+mod friction;
 mod nominal_fit;
 mod usefulness;
 pub(crate) mod warning;
 mod warnings;
 
+pub(crate) use friction::friction_warning;
 pub(crate) use nominal_fit::NominalFit;
 pub use usefulness::{JointWidth, Usefulness, Vacuity, VacuousSet};
 pub use warning::{Warning, WarningKind};

@@ -43,7 +43,7 @@ impl NominalFit {
             let parts = problem.cases_of(suite, |case| Sums::new(problem, &case))?;
             parts.iter().for_each(|part| all.add(part));
         }
-        let recorded: Vec<[f64; 2]> = (0..2 * n).map(|i| bounds(problem, i)).collect();
+        let recorded: Vec<[f64; 2]> = (0..2 * n).map(|i| problem.recorded_bounds(i)).collect();
         let explained = |i: usize| {
             let [low, high] = recorded[i];
             let moves = high - low > 2.0 * problem.sensor_noise().radius[i] && all.motion[i] > 0.0;
@@ -102,13 +102,4 @@ fn nominal_states(problem: &Problem, case: &Case) -> Result<Vec<f64>> {
     }
     let Nominal { trajectory, .. } = Nominal::new(problem.grids()?, case);
     Ok((0..trajectory.len()).flat_map(|k| trajectory.state(k).iter().map(|x| x.mid())).collect())
-}
-
-/// The lowest and the highest recorded value of state `i`.
-fn bounds(problem: &Problem, i: usize) -> [f64; 2] {
-    let envelopes = problem.recordings().suites.iter().map(|suite| &suite.envelope);
-    let samples = envelopes.flat_map(|envelope| (0..envelope.len()).map(move |k| (envelope, k)));
-    samples.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (envelope, k)| {
-        [low.min(envelope.lower(k, i)), high.max(envelope.upper(k, i))]
-    })
 }

@@ -31,10 +31,18 @@ pub enum WarningKind {
     InitialSetOffset,
     /// U reaches beyond the recorded input.
     InputSetSize,
+    /// U does not contain 0.
+    InputSetOffset,
+    /// U is 0 in a joint whose input has an error, and many times the error in another one.
+    InputSetZero,
     /// V is nearly as wide as the recorded motion.
     NoiseSetSize,
     /// The nominal motion explains little of the recorded one.
     Unexplained,
+    /// The recordings are faster than the recordings that friction was fitted to.
+    FrictionRange,
+    /// Viscous friction falls with speed.
+    FallingFriction,
     /// What most likely caused the other warnings.
     Cause,
     /// The fitted nominal model needs larger sets than the identified one for motions that it was
@@ -44,15 +52,25 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// All kinds that are about single joints, in the order of the warnings.
-    pub(crate) const OF_JOINTS: [Self; 7] = [
+    pub(crate) const OF_JOINTS: [Self; 11] = [
         Self::ReachableSetSize,
         Self::InitialSetSize,
         Self::InitialSetStarts,
         Self::InitialSetOffset,
         Self::InputSetSize,
+        Self::InputSetOffset,
+        Self::InputSetZero,
         Self::NoiseSetSize,
         Self::Unexplained,
+        Self::FrictionRange,
+        Self::FallingFriction,
     ];
+
+    /// Returns whether the warning asks for a cause. X0 takes over from U where that is cheaper,
+    /// whatever the recordings are, and friction is a cause of its own.
+    pub(crate) fn has_cause(self) -> bool {
+        !matches!(self, Self::InitialSetStarts | Self::FrictionRange | Self::FallingFriction)
+    }
 }
 
 /// What is remarked of one joint.

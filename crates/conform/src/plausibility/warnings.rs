@@ -5,6 +5,7 @@ use crate::data::settings::NominalStart;
 use crate::error::Result;
 use crate::next_motion::calibration::Calibration;
 use crate::plausibility::causes::likely_cause;
+use crate::plausibility::friction::{beyond_fitted, falling};
 use crate::plausibility::nominal_fit::NominalFit;
 use crate::plausibility::warning::{Remark, Warning, WarningKind};
 use crate::sets::UncertaintySets;
@@ -18,9 +19,19 @@ const PART_OF_MOTION: f64 = 0.02;
 /// A nominal motion that explains less than this part of a velocity's variance is remarked.
 const LEAST_EXPLAINED: f64 = 0.5;
 
+/// A centre of U below this part of the largest input is not remarked.
+const PART_OF_INPUT: f64 = 0.01;
+
+/// U of fewer RMS errors of its joint's input than this counts as 0 ...
+const FEW_ERRORS: f64 = 0.1;
+
+/// ... which is remarked if U of another joint has more errors than this.
+const MANY_ERRORS: f64 = 10.0;
+
 /// Returns what is remarkable about `sets` beside the recordings of `problem`, and the most likely
 /// cause where anything is. `radii` are the largest radii of the reachable set, for each state
-/// that is checked. `calibration` is how the sets were scaled, if they were.
+/// that is checked. `input_error` is the error of each joint's input, n, N m. `calibration` is
+/// how the sets were scaled, if they were.
 ///
 /// # Errors
 ///
@@ -30,19 +41,23 @@ pub(crate) fn warnings(
     sets: &UncertaintySets,
     radii: &[f64],
     fit: &NominalFit,
+    input_error: &[f64],
     calibration: Option<&Calibration>,
 ) -> Result<Vec<Warning>> {
     let n = problem.joints();
     let mut remarks: Vec<Remark> =
         (0..2 * n).flat_map(|i| of_state(problem, sets, radii.get(i), fit, i)).collect();
     remarks.extend((0..n).filter_map(|joint| of_input(problem, sets, fit, joint)));
+    remarks.extend((0..n).filter_map(|joint| offset(problem, sets, fit, joint)));
+    remarks.extend(zeros(problem, sets, input_error));
+    remarks.extend((0..n).filter_map(|joint| beyond_fitted(problem, joint)));
+    remarks.extend((0..n).filter_map(|joint| falling(problem, joint)));
     let of_kind = |kind: WarningKind| {
         let of: Vec<&Remark> = remarks.iter().filter(|remark| remark.kind == kind).collect();
         (!of.is_empty()).then(|| Warning::of_remarks(kind, &of))
     };
     let mut found: Vec<Warning> = WarningKind::OF_JOINTS.into_iter().filter_map(of_kind).collect();
-    // X0 takes over from U where that is cheaper, whatever the recordings are.
-    if found.iter().any(|warning| warning.kind != WarningKind::InitialSetStarts) {
+    if found.iter().any(|warning| warning.kind.has_cause()) {
         let cause = likely_cause(problem, calibration)?;
         found.extend(cause.as_ref().map(Warning::from));
     }
@@ -117,6 +132,54 @@ fn of_input(
             short(largest)
         ),
     })
+}
+
+/// Returns the remark that U of `joint` (from 0) lies away from 0 by more than its radius.
+fn offset(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    fit: &NominalFit,
+    joint: usize,
+) -> Option<Remark> {
+    let (low, high) = sets.input_set.bounds(joint);
+    let is_away = low > 0.0 || high < 0.0;
+    let centre = 0.5 * (low + high);
+    (is_away && centre.abs() > PART_OF_INPUT * fit.largest_input[joint]).then(|| Remark {
+        kind: WarningKind::InputSetOffset,
+        joint: joint + 1,
+        text: format!(
+            "joint {} {}{} {}, {}",
+            joint + 1,
+            if centre < 0.0 { "-" } else { "" },
+            short(centre.abs()),
+            problem.robot().kinds()[joint].force_unit(),
+            short(0.5 * (high - low))
+        ),
+    })
+}
+
+/// Returns remarks on joints whose U is 0 beside their input error, if U of another joint is many
+/// times its own error.
+fn zeros(problem: &Problem, sets: &UncertaintySets, input_error: &[f64]) -> Vec<Remark> {
+    let reach = |joint: usize| {
+        let (low, high) = sets.input_set.bounds(joint);
+        high.max(-low)
+    };
+    let joints = || input_error.iter().enumerate().filter(|(_, error)| **error > 0.0);
+    let takes_over = joints().any(|(joint, error)| reach(joint) > MANY_ERRORS * error);
+    let is_zero = |(joint, error): &(usize, &f64)| reach(*joint) < FEW_ERRORS * **error;
+    let remark = |(joint, error): (usize, &f64)| Remark {
+        kind: WarningKind::InputSetZero,
+        joint: joint + 1,
+        text: format!(
+            "joint {} {} {}, {}",
+            joint + 1,
+            short(reach(joint)),
+            problem.robot().kinds()[joint].force_unit(),
+            short(*error)
+        ),
+    };
+    if takes_over { joints().filter(is_zero).map(remark).collect() } else { Vec::new() }
 }
 
 /// Formats a size to three digits.

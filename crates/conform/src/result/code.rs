@@ -75,10 +75,18 @@ codes! {
     InitialSetOffset = "initial-set-offset",
     /// U reaches beyond the recorded input.
     InputSetSize = "input-set-size",
+    /// U does not contain 0.
+    InputSetOffset = "input-set-offset",
+    /// U is 0 in a joint whose input has an error, and many times the error in another one.
+    InputSetZero = "input-set-zero",
     /// V is nearly as wide as the recorded motion.
     NoiseSetSize = "noise-set-size",
     /// The nominal motion explains little of the recorded one.
     Unexplained = "unexplained",
+    /// The recordings are faster than the recordings that friction was fitted to.
+    FrictionRange = "friction-range",
+    /// Viscous friction falls with speed.
+    FallingFriction = "falling-friction",
     /// The most likely cause of other warnings.
     Cause = "cause",
     /// The fitted model needs larger sets for motions that it was not fitted to.

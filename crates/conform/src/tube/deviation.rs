@@ -60,6 +60,16 @@ impl Deviation {
         Self { suite: case.suite, grid, envelope }
     }
 
+    /// Returns the deviation without any bound after sample `last`.
+    pub(crate) fn lost_after(self, last: usize) -> Self {
+        let (infinity, known) = (f64::INFINITY, |k: usize| k <= last);
+        let envelope = self.envelope.map(
+            |k, _, upper| if known(k) { upper } else { infinity },
+            |k, _, lower| if known(k) { lower } else { -infinity },
+        );
+        Self { envelope, ..self }
+    }
+
     /// Merges the deviations of one suite on one grid: they face the same set, whether or not they
     /// share their nominal motion.
     pub(crate) fn merge(parts: impl IntoIterator<Item = Self>) -> Vec<Self> {

@@ -80,7 +80,7 @@ impl<'a> RecordedBounds<'a> {
             envelope: &deviation.envelope,
         };
         Ok(match problem.dynamics().linear_system() {
-            Some(_) => problem.deviations()?.iter().map(of_grid).collect(),
+            Some(_) => problem.deviations_until()?.all.iter().map(of_grid).collect(),
             None => problem.cases()?.iter().enumerate().map(Self::of_case).collect(),
         })
     }

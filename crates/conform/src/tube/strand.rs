@@ -7,11 +7,12 @@ use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
+use crate::data::runaway::Runaway;
 use crate::sets::UncertaintySets;
 use crate::tube::grids::Grid;
 
 /// A reachable set that could not be followed to the end: the model may run away under its
-/// uncertainty, or the enclosure grew too wide.
+/// uncertainty or without any, or the enclosure grew too wide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lost {
@@ -21,6 +22,9 @@ pub struct Lost {
     pub time: f64,
     /// The state that grew fastest there.
     pub state: State,
+    /// Whether the nominal motion itself runs away there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub nominal: bool,
 }
 
 /// The reachable sets on one grid of a linear model, or along one case of any other.
@@ -67,7 +71,7 @@ impl Strand {
             FlowpipeOutcome::Reached => None,
             FlowpipeOutcome::Failed { time, state, .. } => {
                 let state = State::from_index(*state, case.joints());
-                Some(Lost { case: case.name.clone(), time: *time, state })
+                Some(Lost { case: case.name.clone(), time: *time, state, nominal: false })
             }
         };
         Self { times: Arc::clone(&case.grid), hull: Hull::State(flowpipe), lost }
@@ -93,6 +97,12 @@ impl Strand {
     pub(crate) fn end(&self) -> (usize, f64) {
         let times = self.times.times();
         (times.len().saturating_sub(1), times.last().copied().unwrap_or(0.0))
+    }
+}
+
+impl From<&Runaway> for Lost {
+    fn from(Runaway { case, time, state, .. }: &Runaway) -> Self {
+        Self { case: case.clone(), time: *time, state: *state, nominal: true }
     }
 }
 

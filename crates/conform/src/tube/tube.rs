@@ -86,9 +86,18 @@ impl Tube {
         all
     }
 
-    /// Returns where reachable sets could not be followed to the end.
-    pub(crate) fn lost(&self) -> impl Iterator<Item = &Lost> {
-        self.strands.iter().filter_map(|strand| strand.lost.as_ref())
+    /// Returns where reachable sets, or nominal motions, could not be followed to the end.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::run`].
+    pub(crate) fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
+        let of_sets = self.strands.iter().filter_map(|strand| strand.lost.clone());
+        let runaways = match problem.dynamics().linear_system() {
+            Some(_) => &problem.deviations_until()?.runaways[..],
+            None => &[],
+        };
+        Ok(of_sets.chain(runaways.iter().map(Lost::from)).collect())
     }
 
     /// Hands every row of every suite to `visit`.

@@ -5,6 +5,7 @@ mod common;
 mod equations;
 mod fit;
 mod fold;
+mod friction;
 mod model_file;
 mod next_motion;
 mod nonlinear;

@@ -7,6 +7,8 @@
 mod newton;
 pub(crate) mod program;
 pub(crate) mod pseudo_inertia;
+mod rising;
 
 pub use program::{BodyProgram, BodySolution, PositiveColumn};
 pub use pseudo_inertia::{PER_LINK, pseudo_inertia};
+pub use rising::RisingFriction;

@@ -1,5 +1,6 @@
 use crate::bodies::newton::NewtonStep;
 use crate::bodies::pseudo_inertia::{PER_LINK, link_parameters, parameter_basis, pseudo_inertia};
+use crate::bodies::rising::RisingFriction;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix4};
 
@@ -14,7 +15,8 @@ const SHRINK: f64 = 0.1;
 ///
 /// A larger one would outweigh the prior, and inflate links that the data leave open by the ratio
 /// of the two. The objective then is within this weight times the number of inequalities of its
-/// minimum. There are four inequalities per link, and one per positive column.
+/// minimum. There are four inequalities per link, one per positive column, and three per friction
+/// that must rise.
 const LAST_BARRIER: f64 = 1e-3;
 
 /// Limit of the Newton steps for one barrier weight; a dozen are typical.
@@ -32,7 +34,8 @@ const CONVERGED: f64 = 1e-8;
 ///
 /// It minimises ½ ‖R x - z‖² + s Σ_i [tr(P0_i⁻¹ P_i(x)) - log det P_i(x)] + s' Σ_k [x_k / p_k -
 /// log x_k] over all x for which each P_i(x) is positive definite and each listed parameter x_k is
-/// positive, where s' is a hundredth of s.
+/// positive, where s' is a hundredth of s. Viscous friction that must rise up to a speed has a
+/// matrix of its own that must be positive definite, with the same divergence of weight s'.
 ///
 /// P_i is the pseudo-inertia [[Σ, h], [hᵀ, m]] of link i and linear in x. It is positive definite
 /// if and only if some distribution of positive mass has the link's ten parameters (Wensing, Kim
@@ -59,6 +62,8 @@ pub struct BodyProgram<'a> {
     pub strength: f64,
     /// Columns whose parameters must be positive, such as motor inertias.
     pub positive: &'a [PositiveColumn],
+    /// Viscous friction that must rise with speed.
+    pub rising: &'a [RisingFriction],
 }
 
 /// A column of [`BodyProgram`] whose parameter must be positive.
@@ -91,10 +96,13 @@ impl BodyProgram<'_> {
         let basis = parameter_basis();
         let inverse: Vec<_> = self.prior.iter().map(|p| p.try_inverse()).collect::<Option<_>>()?;
         let mut x = self.start();
-        let normal = self.data.r.transpose() * &self.data.r;
-        let inequalities = 4 * self.prior.len() + self.positive.len();
+        let (p, all) = (self.data.r.ncols(), x.len());
+        // After the parameters, the unknowns are one λ for each friction that must rise.
+        let normal = (self.data.r.transpose() * &self.data.r).resize(all, all, 0.0);
+        let inequalities = 4 * self.prior.len() + self.positive.len() + 3 * self.rising.len();
         // The first barrier weighs as much as the misfit at the start: its minimum is near.
-        let mut barrier = (self.data.sum_of_squares(&x) / inequalities as f64).max(1.0);
+        let misfit = self.data.sum_of_squares(&x.rows(0, p).into_owned());
+        let mut barrier = (misfit / inequalities as f64).max(1.0);
         let weak = self.strength.min(1.0);
         let last = LAST_BARRIER * weak;
         let mut steps = 0;
@@ -113,32 +121,44 @@ impl BodyProgram<'_> {
                 }
             }
             if barrier <= last {
+                let x = x.rows(0, p).into_owned();
                 let solution = BodySolution { x, gap: barrier * inequalities as f64, steps };
                 return (squared_decrement < ACCEPTED).then_some(solution);
             }
         }
     }
 
-    /// Returns the start: the prior, and 0 for columns that have none.
-    fn start(&self) -> DVector<f64> {
-        let mut x = DVector::zeros(self.data.r.ncols());
+    /// Returns the start: the prior, 0 for columns that have none, and friction that rises.
+    pub(crate) fn start(&self) -> DVector<f64> {
+        let p = self.data.r.ncols();
+        let mut x = DVector::zeros(p + self.rising.len());
         for (i, p) in self.prior.iter().enumerate() {
             x.rows_mut(PER_LINK * i, PER_LINK).copy_from_slice(&link_parameters(p));
         }
         self.positive.iter().for_each(|column| x[column.index] = column.prior);
+        self.rising.iter().enumerate().for_each(|(k, friction)| friction.start(&mut x, p + k));
         x
+    }
+
+    /// Returns the weights of a divergence of positive columns and of its barrier.
+    fn weak(&self, barrier: f64) -> [f64; 2] {
+        [POSITIVE_STRENGTH * self.strength, barrier]
     }
 
     /// Returns the objective with its barrier, infinite outside the feasible set.
     fn value(&self, x: &DVector<f64>, barrier: f64, inverse: &[Matrix4<f64>]) -> f64 {
-        let mut value = 0.5 * (&self.data.r * x - &self.data.z).norm_squared();
+        let p = self.data.r.ncols();
+        let mut value = 0.5 * (&self.data.r * x.rows(0, p) - &self.data.z).norm_squared();
+        let rising = self.rising.iter().enumerate();
+        let rising = rising.map(|(k, of)| of.value(x.as_slice(), p + k, self.weak(barrier)));
+        value += rising.sum::<f64>();
         for (i, prior) in inverse.iter().enumerate() {
             let p = pseudo_inertia(&x.as_slice()[PER_LINK * i..]);
             let Some(factor) = Cholesky::new(p) else { return f64::INFINITY };
             let log_det = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
             value += self.strength * (prior * p).trace() - (self.strength + barrier) * log_det;
         }
-        let strength = POSITIVE_STRENGTH * self.strength;
+        let [strength, _] = self.weak(barrier);
         let divergence = |column: &PositiveColumn| match x[column.index] {
             own if own > 0.0 => strength * own / column.prior - (strength + barrier) * own.ln(),
             _ => f64::INFINITY,
@@ -157,7 +177,9 @@ impl BodyProgram<'_> {
     ) -> Option<NewtonStep> {
         // Misfit.
         let mut hessian = normal.clone();
-        let mut gradient = self.data.r.transpose() * (&self.data.r * x - &self.data.z);
+        let p = self.data.r.ncols();
+        let misfit = self.data.r.transpose() * (&self.data.r * x.rows(0, p) - &self.data.z);
+        let mut gradient = misfit.resize_vertically(x.len(), 0.0);
         // Divergence and barrier of each link. With P = L Lᵀ and W_k = L⁻¹ E_k L⁻ᵀ, tr(P⁻¹ E_k) =
         // tr W_k and tr(P⁻¹ E_k P⁻¹ E_l) = ⟨W_k, W_l⟩, so that the Hessian is never indefinite.
         for (i, prior) in inverse.iter().enumerate() {
@@ -174,10 +196,14 @@ impl BodyProgram<'_> {
             }
         }
         // Divergence and barrier of the positive columns.
-        let strength = POSITIVE_STRENGTH * self.strength;
+        let [strength, _] = self.weak(barrier);
         for &PositiveColumn { index, prior } in self.positive {
             gradient[index] += strength / prior - (strength + barrier) / x[index];
             hessian[(index, index)] += (strength + barrier) / x[index].powi(2);
+        }
+        for (k, friction) in self.rising.iter().enumerate() {
+            let sums = (&mut gradient, &mut hessian);
+            friction.add_derivatives(x.as_slice(), p + k, self.weak(barrier), sums)?;
         }
         NewtonStep::new(&hessian, &gradient)
     }
@@ -214,6 +240,14 @@ mod tests {
         Matrix4::from_diagonal(&nalgebra::Vector4::new(0.02, 0.03, 0.04, 2.0))
     }
 
+    fn solve(
+        data: &TriangularFactor,
+        strength: f64,
+        positive: &[PositiveColumn],
+    ) -> Option<BodySolution> {
+        BodyProgram { data, prior: &[ball()], strength, positive, rising: &[] }.solve()
+    }
+
     /// Data whose least-squares solution is `target`, with the standard deviation 0.01.
     fn data_for(target: &[f64]) -> TriangularFactor {
         let n = target.len();
@@ -229,9 +263,7 @@ mod tests {
     fn a_physically_consistent_link_is_reproduced() {
         let target = link_parameters(&ball());
         let data = data_for(&target);
-        let point = BodyProgram { data: &data, prior: &[ball()], strength: 1e-6, positive: &[] }
-            .solve()
-            .unwrap();
+        let point = solve(&data, 1e-6, &[]).unwrap();
         assert!(point.x.iter().zip(&target).all(|(a, b)| (a - b).abs() < 1e-3), "{}", point.x);
     }
 
@@ -241,9 +273,7 @@ mod tests {
         let mut target = link_parameters(&ball());
         target[0] = -1.0;
         let data = data_for(&target);
-        let point = BodyProgram { data: &data, prior: &[ball()], strength: 1e-6, positive: &[] }
-            .solve()
-            .unwrap();
+        let point = solve(&data, 1e-6, &[]).unwrap();
         assert!(point.x[0] > 0.0 && point.x[0] < 1e-3, "{}", point.x);
         assert!((point.x[4] - target[4]).abs() < 1e-3);
     }
@@ -253,10 +283,7 @@ mod tests {
         let target = [link_parameters(&ball()).as_slice(), &[-0.5, 0.7]].concat();
         let data = data_for(&target);
         let positive = [PositiveColumn { index: 10, prior: 1.0 }];
-        let point =
-            BodyProgram { data: &data, prior: &[ball()], strength: 1e-6, positive: &positive }
-                .solve()
-                .unwrap();
+        let point = solve(&data, 1e-6, &positive).unwrap();
         assert!(point.x[10] > 0.0 && point.x[10] < 1e-3 && (point.x[11] - 0.7).abs() < 1e-6);
     }
 
@@ -267,10 +294,7 @@ mod tests {
         (rows[10], rows[11], rows[12]) = (100.0, 100.0, 500.0);
         let data = TriangularFactor::from_rows(&rows, 12);
         let positive = [PositiveColumn { index: 10, prior: 2.0 }];
-        let point =
-            BodyProgram { data: &data, prior: &[ball()], strength: 1.0, positive: &positive }
-                .solve()
-                .unwrap();
+        let point = solve(&data, 1.0, &positive).unwrap();
         assert!((point.x[10] - 2.0).abs() < 0.3, "{}", point.x);
         assert!((point.x[10] + point.x[11] - 5.0).abs() < 1e-6, "{}", point.x);
     }
@@ -278,9 +302,7 @@ mod tests {
     #[test]
     fn without_data_the_solution_is_the_prior() {
         let data = TriangularFactor::from_rows(&[vec![0.0; 10], vec![0.0]].concat(), 10);
-        let point = BodyProgram { data: &data, prior: &[ball()], strength: 1.0, positive: &[] }
-            .solve()
-            .unwrap();
+        let point = solve(&data, 1.0, &[]).unwrap();
         // At the minimum s P0⁻¹ = (s + barrier) P⁻¹, so that the last barrier scales the prior.
         let scaled = (1.0 + LAST_BARRIER) * ball();
         assert!((pseudo_inertia(point.x.as_slice()) - scaled).amax() < 1e-6);
@@ -293,8 +315,7 @@ mod tests {
         (rows[0], rows[10]) = (100.0, 100.0 * ball()[(3, 3)]);
         let data = TriangularFactor::from_rows(&rows, 10);
         for strength in [1e-3, 1e-6, 1e-9] {
-            let program = BodyProgram { data: &data, prior: &[ball()], strength, positive: &[] };
-            let found = pseudo_inertia(program.solve().unwrap().x.as_slice());
+            let found = pseudo_inertia(solve(&data, strength, &[]).unwrap().x.as_slice());
             assert!((found - ball()).amax() < 0.01 * ball().amax(), "{strength}: {found}");
         }
     }
@@ -307,9 +328,7 @@ mod tests {
         for scale in [1e2, 1e6, 1e8] {
             let mut data = data_for(&flat);
             (data.r, data.z) = (data.r * (scale / 100.0), data.z * (scale / 100.0));
-            let program =
-                BodyProgram { data: &data, prior: &[ball()], strength: 1.0, positive: &[] };
-            let found = program.solve().unwrap_or_else(|| panic!("no link at {scale}"));
+            let found = solve(&data, 1.0, &[]).unwrap_or_else(|| panic!("no link at {scale}"));
             let off = found.x.iter().zip(&flat).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             assert!(off < 0.1 / scale.sqrt(), "{scale}: {off}");
         }
@@ -326,9 +345,7 @@ mod tests {
             other in prop::collection::vec(-1.0..1.0_f64, 16),
         ) {
             let data = data_for(&target);
-            let prior = [ball()];
-            let program = BodyProgram { data: &data, prior: &prior, strength: 1e-9, positive: &[] };
-            let point = program.solve().unwrap();
+            let point = solve(&data, 1e-9, &[]).unwrap();
             let p = pseudo_inertia(point.x.as_slice());
             prop_assert!(SymmetricEigen::new(p).eigenvalues.min() > 0.0);
             let root = Matrix4::from_row_slice(&other);

@@ -1,3 +1,4 @@
+use crate::friction::falling::{FallingFriction, nearest, rising};
 use crate::friction::form::CoulombForm;
 use crate::friction::model::FrictionModel;
 use crate::friction::sample::{FrictionSample, quadrant_counts};
@@ -46,6 +47,9 @@ pub struct JointFriction {
     /// The trial of the Stribeck effect, if it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stribeck: Option<StribeckTrial>,
+    /// Viscous friction of least squares, if it falls with speed and was not used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub falling: Option<FallingFriction>,
 }
 
 /// A joint's friction fit with its samples and residuals.
@@ -78,33 +82,38 @@ impl FrictionFit {
 /// Fits (5) to (9) to the samples of one joint: Coulomb friction, a cubic in q̇, and the joint's
 /// inertia.
 ///
-/// Coulomb friction has the richest [`CoulombForm`] that the samples determine. The result is
-/// `None` for fewer than 50 samples.
+/// Coulomb friction has the richest [`CoulombForm`] that the samples determine, and viscous
+/// friction rises up to the speed `limit` \[rad/s\]. The result is `None` for fewer than 50
+/// samples.
 #[must_use]
-pub(crate) fn fit(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
+pub(crate) fn fit(name: &str, samples: &[FrictionSample], limit: f64) -> Option<FrictionFit> {
     if samples.len() < MIN_SAMPLES {
         return None;
     }
     let model = FrictionModel { form: CoulombForm::determined_by(samples), stribeck: None };
-    Some(fit_model(name, samples, model))
+    Some(fit_model(name, samples, model, limit))
 }
 
 /// Fits friction as [`fit`] does, and tries the Stribeck effect.
 ///
 /// The effect becomes part of the friction if it predicts held-out slow motions better.
 #[must_use]
-pub(crate) fn fit_with_stribeck(name: &str, samples: &[FrictionSample]) -> Option<FrictionFit> {
-    let mut found = fit(name, samples)?;
+pub(crate) fn fit_with_stribeck(
+    name: &str,
+    samples: &[FrictionSample],
+    limit: f64,
+) -> Option<FrictionFit> {
+    let mut found = fit(name, samples, limit)?;
     let form = found.joint.form;
     let (_, weights) = robust_solution(FrictionModel { form, stribeck: None }, samples);
     let (trial, stribeck) = try_stribeck(form, samples, &weights);
     if stribeck.is_some() {
-        found = fit_model(name, samples, FrictionModel { form, stribeck });
+        found = fit_model(name, samples, FrictionModel { form, stribeck }, limit);
     }
     // Other weights of outliers may turn the rise into a fall.
     let falls = found.joint.coefficients.stribeck.is_some_and(|law| law.excess <= 0.0);
     if falls {
-        found = fit(name, samples)?;
+        found = fit(name, samples, limit)?;
     }
     let reason = falls.then(|| "friction does not rise toward standstill".into());
     let (accepted, reason) = (trial.accepted && !falls, trial.reason.or(reason));
@@ -113,8 +122,14 @@ pub(crate) fn fit_with_stribeck(name: &str, samples: &[FrictionSample]) -> Optio
 }
 
 /// Fits the coefficients of a model.
-fn fit_model(name: &str, samples: &[FrictionSample], model: FrictionModel) -> FrictionFit {
-    let (solution, weights) = robust_solution(model, samples);
+fn fit_model(
+    name: &str,
+    samples: &[FrictionSample],
+    model: FrictionModel,
+    limit: f64,
+) -> FrictionFit {
+    let (mut solution, weights) = robust_solution(model, samples);
+    let falling = rise(name, (model, samples, &weights), limit, &mut solution.x);
     let residuals = residuals(model, samples, &solution.x);
     // Standard errors that count independent samples only.
     let time = autocorrelation_time(&[&residuals]);
@@ -139,8 +154,28 @@ fn fit_model(name: &str, samples: &[FrictionSample], model: FrictionModel) -> Fr
         inertia: solution.x[model.inertia()],
         samples: (samples.len(), samples.len() as f64 / time),
         stribeck: None,
+        falling,
     };
     FrictionFit { joint, samples: samples.to_vec(), residuals }
+}
+
+/// Replaces a solution whose viscous friction falls with speed before `limit` \[rad/s\] by the
+/// nearest whose friction rises. Returns the friction that was replaced.
+fn rise(
+    name: &str,
+    (model, samples, weights): (FrictionModel, &[FrictionSample], &[f64]),
+    limit: f64,
+    x: &mut DVector<f64>,
+) -> Option<FallingFriction> {
+    let viscous = model.description(x.as_slice()).viscous;
+    let falls_beyond = FallingFriction::speed(viscous, limit)?;
+    let size = |x: &DVector<f64>| root_mean_square(residuals(model, samples, x).into_iter());
+    let plain = size(x);
+    let condition = rising(model.viscous().map(Some), [0.0; 3], viscous, limit);
+    let factor = weighted_factor(model, samples, weights);
+    *x = nearest(&factor, plain.max(f64::MIN_POSITIVE), &[condition]);
+    let residuals = [plain, size(x)];
+    Some(FallingFriction { joint: name.into(), viscous, falls_beyond, limit, residuals })
 }
 
 /// Returns the standard errors of the coefficients, and of the Stribeck speed as the last of them,
@@ -169,18 +204,18 @@ fn standard_errors(
 fn robust_solution(model: FrictionModel, samples: &[FrictionSample]) -> (Solution, Vec<f64>) {
     let mut weights = vec![1.0; samples.len()];
     for _ in 0..ROUNDS {
-        let left = residuals(model, samples, &weighted_solution(model, samples, &weights).x);
+        let left = residuals(model, samples, &weighted_factor(model, samples, &weights).solve().x);
         let limit = HUBER_DEVIATIONS * robust_standard_deviation(&left);
         weights = left.iter().map(|r| huber_row_factor(*r, limit)).collect();
     }
-    (weighted_solution(model, samples, &weights), weights)
+    (weighted_factor(model, samples, &weights).solve(), weights)
 }
 
-fn weighted_solution(
+fn weighted_factor(
     model: FrictionModel,
     samples: &[FrictionSample],
     weights: &[f64],
-) -> Solution {
+) -> TriangularFactor {
     let columns = model.columns();
     let all: Vec<usize> = (0..samples.len()).collect();
     TriangularFactor::from_written_rows(&all, columns, |k, out| {
@@ -188,7 +223,6 @@ fn weighted_solution(
         out[..columns].iter_mut().zip(&row).for_each(|(o, v)| *o = w * v);
         out[columns] = w * samples[k].torque;
     })
-    .solve()
 }
 
 fn residuals(model: FrictionModel, samples: &[FrictionSample], x: &DVector<f64>) -> Vec<f64> {
@@ -235,7 +269,7 @@ mod tests {
 
     #[test]
     fn the_quadrants_of_joint_2_of_the_paper_are_found() {
-        let found = fit("joint2", &swings(A, 30.0, 0.3)).unwrap().joint;
+        let found = fit("joint2", &swings(A, 30.0, 0.3), 1.0).unwrap().joint;
         assert_eq!(found.form, CoulombForm::Quadrants);
         let (mut within, mut count) = (0, 0);
         let true_values = A.iter().chain(&[10.08, 0.1, -1.02]);
@@ -255,7 +289,7 @@ mod tests {
 
     #[test]
     fn a_joint_without_load_has_one_value_per_direction() {
-        let found = fit("joint1", &swings(A, 0.0, 0.1)).unwrap().joint;
+        let found = fit("joint1", &swings(A, 0.0, 0.1), 1.0).unwrap().joint;
         assert_eq!(found.form, CoulombForm::Constant);
         let [_, _, a3, _, a5, _, a7, _] = found.coefficients.coulomb;
         assert!(
@@ -268,9 +302,9 @@ mod tests {
     #[test]
     fn outliers_hardly_change_the_fit() {
         let mut samples = swings(A, 30.0, 0.1);
-        let clean = fit("j", &samples).unwrap().joint.coefficients;
+        let clean = fit("j", &samples, 1.0).unwrap().joint.coefficients;
         samples.iter_mut().step_by(25).for_each(|s| s.torque += 80.0);
-        let disturbed = fit("j", &samples).unwrap().joint.coefficients;
+        let disturbed = fit("j", &samples, 1.0).unwrap().joint.coefficients;
         let off = clean
             .coulomb
             .iter()
@@ -278,6 +312,6 @@ mod tests {
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, f64::max);
         assert!(off < 0.1, "{off}");
-        assert!(fit("j", &samples[..40]).is_none());
+        assert!(fit("j", &samples[..40], 1.0).is_none());
     }
 }

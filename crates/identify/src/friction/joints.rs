@@ -24,7 +24,7 @@ pub(crate) fn fit_joints(
         let samples: Vec<FrictionSample> =
             slow.iter().flat_map(|log| isolated_samples(robot, log, joint, sampling)).collect();
         let fit = if stribeck { fit_with_stribeck } else { fit };
-        match fit(name, &samples) {
+        match fit(name, &samples, sampling.velocity_limit(robot, joint)) {
             Some(fit) => {
                 warnings.extend(ill_conditioned(name, fit.joint.condition));
                 fits.push(fit);

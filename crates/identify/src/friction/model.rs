@@ -35,6 +35,11 @@ impl FrictionModel {
         x[self.columns() - 1] * s.factors[0] * rise(s, speed) * slope
     }
 
+    /// Returns the indices of v1, v2 and v3.
+    pub(super) fn viscous(&self) -> [usize; 3] {
+        [4, 3, 2].map(|before| self.form.columns() - before)
+    }
+
     /// Returns the index of the joint's inertia.
     pub(super) fn inertia(&self) -> usize {
         self.form.columns() - 1

@@ -204,7 +204,7 @@ mod tests {
             FrictionSample { qd, qdd, load, torque, factors: [1.0; 2] }
         };
         let samples: Vec<_> = (1..9000).map(sample).filter(|s| s.qd.abs() > slowest).collect();
-        fit_with_stribeck("joint", &samples).unwrap()
+        fit_with_stribeck("joint", &samples, 0.6).unwrap()
     }
 
     #[test]

@@ -1,8 +1,12 @@
+use crate::bodies::RisingFriction;
 use crate::error::{Error, Result};
 use crate::fit::{Fit, JointFit};
+use crate::friction::falling::{FallingFriction, nearest};
 use crate::inertia::base::{BaseParameter, base_parameters};
 use crate::inertia::columns::{FrictionColumns, fitted_columns};
-use crate::inertia::physical::{PhysicalFit, nearest_bodies, why_impossible};
+use crate::inertia::diagonal::JointInertia;
+use crate::inertia::falling::ViscousColumns;
+use crate::inertia::physical::{PhysicalFit, nearest_bodies, residual_sizes, why_impossible};
 use crate::inertia::reference::reference_factor;
 use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, Samples, Sampling};
@@ -26,6 +30,8 @@ pub struct InertiaFit {
     pub values: DVector<f64>,
     /// Effect of the physical constraint; `None` if it was not requested.
     pub physical: Option<PhysicalFit>,
+    /// Viscous friction of least squares that falls with speed and was not used.
+    pub falling: Vec<FallingFriction>,
     /// Reason why no physical robot has the values of least squares, if these are used.
     pub impossible: Option<String>,
     /// Quality of the fit, one entry per joint.
@@ -43,6 +49,8 @@ pub struct InertiaFit {
     /// It does not depend on the frames of the links, and is infinite if the recordings do not
     /// determine a combination.
     pub condition: f64,
+    /// The inertia that each joint feels, with its standard error.
+    pub diagonal: Vec<JointInertia>,
     /// Relative singular values on either side of the rank of the structural regressor.
     ///
     /// A wide gap between them confirms the number of combinations.
@@ -80,18 +88,21 @@ pub(crate) fn fit_inertia(
     let fit = Fit::of_groups(&groups, !model.robust);
     // Physically consistent links.
     let has_bodies = robot.description().parameters == ParameterSet::Physical;
-    let has_bodies = model.physical.unwrap_or(has_bodies);
-    let physical = has_bodies
-        .then(|| nearest_bodies([robot, known], &columns, &fit, &moving, model))
-        .transpose()?;
-    let (values, physical, impossible) = match physical {
-        Some((values, physical)) => (values, Some(physical), None),
+    // Behind the gears, wrists have almost no inertia, and least squares often a negative one.
+    let has_bodies = model.physical.unwrap_or(has_bodies || !model.motor_inertia);
+    let limits = sampling.velocity_limits(robot);
+    let viscous = ViscousColumns { known, columns: &columns, limits: &limits };
+    let physical =
+        has_bodies.then(|| nearest_bodies(robot, &viscous, &fit, &moving, model)).transpose()?;
+    let (values, physical, falling, impossible) = match physical {
+        Some((values, physical, falling)) => (values, Some(physical), falling, None),
         None => {
-            let values = fit.solution.x.clone();
+            let (values, falling) = plain_values(&fit, &moving, &viscous)?;
             let impossible = why_impossible(robot, &columns, &values)?;
-            (values, None, impossible)
+            (values, None, falling, impossible)
         }
     };
+    let solved = (&fit.whitened, &fit.solution.x);
     // Identifiable combinations.
     let base = BaseParameters::of_robot(robot, &columns);
     let reference = reference_factor(robot, &columns, dynamic, &fit.joints[0]);
@@ -100,16 +111,31 @@ pub(crate) fn fit_inertia(
     Ok(InertiaFit {
         joints: fit.joints[0].clone(),
         gap: base.gap(),
+        diagonal: JointInertia::of_joints(robot, &columns, dynamic, solved),
         columns,
         fit,
         values,
         physical,
+        falling,
         impossible,
         standard_errors: single_errors(&base, &base_fit.parameters),
         parameters: base_fit.parameters,
         determined: base_fit.determined,
         condition: base_fit.condition,
     })
+}
+
+/// Returns the values of least squares with viscous friction that rises, and the friction that did
+/// not.
+fn plain_values(
+    fit: &Fit,
+    moving: &Samples,
+    viscous: &ViscousColumns,
+) -> Result<(DVector<f64>, Vec<FallingFriction>)> {
+    let mut values = fit.solution.x.clone();
+    let solve = |rising: &[RisingFriction]| Ok(nearest(&fit.whitened, 1.0, rising));
+    let falling = viscous.rise::<Error>(&mut values, solve, |x| residual_sizes(moving, x))?;
+    Ok((values, falling))
 }
 
 /// Returns the standard error of each column that is a base parameter alone.
@@ -137,7 +163,8 @@ impl InertiaFit {
         });
         let physical =
             self.physical.iter().flat_map(|physical| physical.growth_warnings(robot, &self.joints));
-        impossible.chain(physical).collect()
+        let open = self.diagonal.iter().filter_map(|inertia| inertia.warning(robot));
+        impossible.chain(physical).chain(open).collect()
     }
 
     /// Returns a warning that names the combinations that only the prior determines, if there are

@@ -3,11 +3,14 @@
 pub(crate) mod base;
 pub(crate) mod columns;
 pub(crate) mod description;
+mod diagonal;
+mod falling;
 pub(crate) mod fit;
 pub(crate) mod physical;
 mod prior;
 mod reference;
 
 pub use base::BaseParameter;
+pub use diagonal::JointInertia;
 pub use fit::InertiaFit;
 pub use physical::PhysicalFit;

@@ -1,7 +1,10 @@
+use crate::bodies::RisingFriction;
 use crate::bodies::program::{BodyProgram, PositiveColumn};
 use crate::error::{Error, Result};
 use crate::fit::{Fit, JointFit};
+use crate::friction::falling::FallingFriction;
 use crate::inertia::columns::inertia_part;
+use crate::inertia::falling::ViscousColumns;
 use crate::inertia::prior::LinkPrior;
 use crate::regression::residuals::root_mean_square;
 use crate::regression::solution::Solution;
@@ -71,36 +74,40 @@ impl PhysicalFit {
 
 /// Finds the physically consistent links nearest to the data.
 ///
-/// Returns all values of `columns` and the effect of the constraint. `known` is the robot whose
-/// friction was subtracted.
+/// Returns all values of `columns`, the effect of the constraint, and viscous friction that fell
+/// with speed. `known` is the robot whose friction was subtracted.
 ///
 /// # Errors
 ///
 /// [`Error::NoPhysicalLinks`] if the program has no solution.
-pub(crate) fn nearest_bodies(
-    [robot, known]: [&Robot; 2],
-    columns: &[Parameter],
+pub(super) fn nearest_bodies(
+    robot: &Robot,
+    viscous: &ViscousColumns,
     fit: &Fit,
     moving: &Samples,
     model: &ModelSettings,
-) -> Result<(DVector<f64>, PhysicalFit)> {
+) -> Result<(DVector<f64>, PhysicalFit, Vec<FallingFriction>)> {
+    let ViscousColumns { known, columns, .. } = *viscous;
     let data = &no_sharper(&fit.whitened, &fit.joints[0]);
     let positive = positive_columns([robot, known], columns, fit, model.prior);
-    let solve = |prior: &LinkPrior| {
+    let solve = |prior: &LinkPrior, rising: &[RisingFriction]| {
         let (prior, strength) = (prior.inertias(), model.prior_strength);
-        BodyProgram { data, prior: &prior, strength, positive: &positive }
+        BodyProgram { data, prior: &prior, strength, positive: &positive, rising }
             .solve()
             .ok_or(Error::NoPhysicalLinks { cause: None })
     };
     // The data decide the size of the balls.
     let mut prior = LinkPrior::new(robot, model.prior);
-    let mut solution = solve(&prior)?;
+    let mut solution = solve(&prior, &[])?;
     for _ in 0..SIZE_ROUNDS {
         if !prior.adapt(solution.x.as_slice()) {
             break;
         }
-        solution = solve(&prior)?;
+        solution = solve(&prior, &[])?;
     }
+    let sizes = |x: &DVector<f64>| residual_sizes(moving, x);
+    let again = |rising: &[RisingFriction]| Ok::<_, Error>(solve(&prior, rising)?.x);
+    let falling = viscous.rise(&mut solution.x, again, sizes)?;
     let before = residual_sizes(moving, &fit.solution.x);
     let after = residual_sizes(moving, &solution.x);
     let physical = PhysicalFit {
@@ -111,7 +118,7 @@ pub(crate) fn nearest_bodies(
         residuals: before.into_iter().zip(after).map(<[f64; 2]>::from).collect(),
         balls: prior.balls(robot),
     };
-    Ok((solution.x, physical))
+    Ok((solution.x, physical, falling))
 }
 
 /// Returns the data with errors of at least [`SHARPEST`] of the torque.
@@ -164,7 +171,7 @@ fn positive_columns(
 }
 
 /// Returns the root mean square of each joint's residuals \[N m\].
-fn residual_sizes(moving: &Samples, x: &DVector<f64>) -> Vec<f64> {
+pub(super) fn residual_sizes(moving: &Samples, x: &DVector<f64>) -> Vec<f64> {
     let residuals = moving.residuals(x);
     let size =
         |joint| root_mean_square(moving.joint_values(&residuals, joint).concat().into_iter());

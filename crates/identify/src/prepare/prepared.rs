@@ -9,7 +9,7 @@ use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource};
 use rayon::prelude::*;
-use reachtube_recordings::Run;
+use reachtube_recordings::{Run, Torque};
 use reachtube_robot::friction::Coulomb;
 use reachtube_robot::{Joint, Robot};
 
@@ -40,7 +40,8 @@ pub struct Prepared {
 /// input u of (11). Near standstill, friction holds a joint
 /// ([`Robot::input_from_holding_torque`]). What is taken off is filtered as the torques are: where
 /// a joint turns, friction steps, and the filtered torque does not. An input that is computed from
-/// filtered torques misses up to twice the friction about every turn.
+/// filtered torques misses up to twice the friction about every turn. To torques that were measured
+/// behind the gear, what the motors' inertia takes is added ([`PrepareSettings::torque`]).
 ///
 /// # Errors
 ///
@@ -61,6 +62,15 @@ pub fn prepare(
     let mut changes =
         described(logs.iter().map(PreparedLog::len).sum(), &changes, settings, cut_off);
     changes.extend(compensated.map(compensation));
+    let adds_inertia = |robot: &&Robot| {
+        settings.torque == Some(Torque::Link)
+            && robot.joints().iter().any(|joint| joint.armature > 0.0)
+    };
+    changes.extend(compensated.filter(adds_inertia).map(|_| {
+        "added what the motors' inertia takes, J times the measured acceleration, which the \
+         sensors do not measure"
+            .to_string()
+    }));
     Ok(Prepared { logs, cut_off, changes })
 }
 
@@ -154,6 +164,9 @@ pub(crate) fn prepare_one(
     let mut log = signals.log(&settings.gains, differentiated);
     if let Some(robot) = compensated {
         signals.compensate(&mut log, robot);
+        if settings.torque == Some(Torque::Link) {
+            add_motor_inertia(&mut log, robot);
+        }
     }
     // Ends without the filter's extrapolation.
     let end = (TRANSIENT_PERIODS / (cut_off * step)).ceil() as usize;
@@ -242,6 +255,14 @@ impl<'a> Signals<'a> {
             torques.zip(self.filtered(column)).for_each(|(torque, off)| *torque -= off);
         }
     }
+}
+
+/// Adds to the input what the motors' inertia takes, J q̈, which a sensor behind the gear does not
+/// measure.
+fn add_motor_inertia(log: &mut PreparedLog, robot: &Robot) {
+    let inertia = robot.joints().iter().map(|joint| joint.armature).cycle();
+    let accelerations = log.tau.iter_mut().zip(&log.qdd).zip(inertia);
+    accelerations.for_each(|((tau, qdd), inertia)| *tau += inertia * qdd);
 }
 
 /// Returns the robot with the friction that it has at sample `k`, as far as the log knows it.

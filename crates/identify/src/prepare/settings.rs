@@ -1,4 +1,4 @@
-use reachtube_recordings::{ColumnSettings, GapLimit, LogSettings};
+use reachtube_recordings::{ColumnSettings, GapLimit, LogSettings, Torque};
 use serde::{Deserialize, Serialize};
 
 /// Settings of how recordings are prepared.
@@ -22,6 +22,12 @@ pub struct PrepareSettings {
     /// By default it is 1.9 times the usual time at a fixed rate, and 10 times the usual time where
     /// the sample times jitter.
     pub max_gap: Option<f64>,
+    /// What the recorded torques are where they are compensated; motor torques by default.
+    ///
+    /// Torques behind the gear, `link`, do not drive the motors' inertia. What it takes, J q̈ with
+    /// the acceleration of the filtered velocity, is added to the input.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque: Option<Torque>,
     /// Columns of recordings as robots and drivers log them, where their names do not tell.
     #[serde(skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,

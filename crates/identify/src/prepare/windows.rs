@@ -15,6 +15,8 @@ pub struct Windows {
     pub changes: Vec<String>,
     /// Whether the logs are simulated, which the index of the windows then says.
     pub simulated: bool,
+    /// Standard deviations of the sensors' noise that is left, 2n, which the index says likewise.
+    pub noise: Option<Vec<f64>>,
 }
 
 /// An interval of a log.
@@ -48,7 +50,8 @@ pub fn windows(logs: &[PreparedLog], duration: Option<f64>, repeats: bool) -> Wi
         reference => delay(&logs[reference], &logs[index]).unwrap_or(0.0),
     };
     let delays: Vec<f64> = (0..logs.len()).map(late).collect();
-    let mut found = Windows { windows: Vec::new(), changes: Vec::new(), simulated: false };
+    let mut found =
+        Windows { windows: Vec::new(), changes: Vec::new(), simulated: false, noise: None };
     for (index, (log, motion)) in logs.iter().zip(&motions).enumerate() {
         if delays[index] != 0.0 {
             let reference = &logs[first(index)].name;
@@ -106,6 +109,7 @@ impl Windows {
             let run = run.expect("a window has one row of finite numbers for each sample");
             let entry = runs.push(&file, Some(&window.suite), Some(&window.motion), run);
             entry.simulated = self.simulated;
+            entry.noise.clone_from(&self.noise);
         }
         runs
     }
@@ -118,9 +122,13 @@ impl Windows {
     ///
     /// [`Error::File`](crate::Error::File) if a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        let mut index = String::from("file,suite,motion,simulated\n");
+        let mut index = String::from("file,suite,motion,simulated,noise\n");
+        let noise: Vec<String> =
+            self.noise.iter().flatten().map(|deviation| format!("{deviation:.2e}")).collect();
+        let noise = noise.join(" ");
         for (file, window) in self.file_names().zip(&self.windows) {
-            let _ = writeln!(index, "{file},{},{},{}", window.suite, window.motion, self.simulated);
+            let Window { suite, motion, .. } = window;
+            let _ = writeln!(index, "{file},{suite},{motion},{},{noise}", self.simulated);
             let text = csv(&window.log);
             atomically(&folder.join(&file), |out| out.write_all(text.as_bytes()))?;
         }
@@ -182,11 +190,15 @@ mod tests {
     #[test]
     fn the_written_files_are_a_data_set() {
         let folder = tempfile::tempdir().unwrap();
-        windows(&[bump("a", 1.0)], None, false).write(folder.path()).unwrap();
+        let noise = Some(vec![1.5e-5, 0.0]);
+        let prepared = Windows { noise, ..windows(&[bump("a", 1.0)], None, false) };
+        prepared.write(folder.path()).unwrap();
         let data = reachtube_recordings::DataSet::open(folder.path()).unwrap();
         let run = data.read(0, &ReadOptions::default()).unwrap();
         assert_eq!((run.len(), data.suites()[0].name.as_str()), (400, "a"));
-        let in_memory = windows(&[bump("a", 1.0)], None, false).runs();
+        let in_memory = prepared.runs();
+        assert_eq!(data.runs()[0].noise, Some(vec![1.5e-5, 0.0]));
+        assert_eq!(in_memory.runs()[0].noise, data.runs()[0].noise);
         let own = in_memory.read(0, &ReadOptions::default()).unwrap();
         assert_eq!((own.times, own.states, own.torques), (run.times, run.states, run.torques));
         assert_eq!(in_memory.runs()[0].file, data.runs()[0].file);

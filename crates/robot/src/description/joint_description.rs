@@ -101,6 +101,10 @@ pub struct FrictionDescription {
     /// them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub standard_errors: Option<FrictionErrors>,
+    /// Lowest and highest velocity of the samples that the coefficients were fitted to \[rad/s;
+    /// m/s\]; unknown by default. Nothing is computed from them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fitted_velocities: Option<[f64; 2]>,
 }
 
 /// Standard errors of identified friction, in the units of the coefficients; 0 where one is

@@ -202,6 +202,13 @@ fn check_drive(joint: &JointDescription) -> Checked {
             || "a standard error is negative".into(),
         )?;
     }
+    if let Some([low, high]) = joint.friction.fitted_velocities {
+        finite("friction", &[low, high])?;
+        require(low <= high, "friction", "give the lower velocity first", || {
+            let unit = joint.kind.velocity_unit();
+            format!("fitted_velocities [{low}, {high}] {unit}: the first exceeds the second")
+        })?;
+    }
     check_stribeck(joint)?;
     check_warming(joint)
 }

@@ -36,6 +36,36 @@ impl Viscous {
         (S::from(self.v1) + inner * qd.clone()) * qd.clone()
     }
 
+    /// Returns the lowest speed \[rad/s\] from which on friction falls with speed in either
+    /// direction, and `None` if it rises up to `limit` \[rad/s\].
+    ///
+    /// Friction that rises never drives: its torque is 0 at standstill.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use reachtube_robot::friction::Viscous;
+    ///
+    /// let friction = Viscous { v1: 3.0, v2: 0.0, v3: -1.0 };
+    /// assert_eq!(friction.falls_beyond(0.9), None);
+    /// assert!((friction.falls_beyond(2.0).unwrap() - 1.0).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn falls_beyond(&self, limit: f64) -> Option<f64> {
+        let one_way = |b: f64| {
+            let (a, c) = (3.0 * self.v3, self.v1);
+            let falls = a < 0.0 || b < 0.0;
+            if c < 0.0 || (c == 0.0 && falls) {
+                return Some(0.0);
+            }
+            // The first root of the slope c + 2 b s + a s².
+            let root = b * b - a * c;
+            let first = (falls && root > 0.0).then(|| c / (root.sqrt() - b));
+            first.filter(|speed| *speed < limit)
+        };
+        [self.v2, -self.v2].into_iter().filter_map(one_way).reduce(f64::min)
+    }
+
     /// Returns the derivative d tau_v / d q̇ \[N m s/rad\].
     ///
     /// # Guarantee

@@ -67,13 +67,19 @@ fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
 
 /// Writes the robot file, the report page and the URDF that the arguments ask for.
 fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
-    if let Some(path) = &args.out {
-        save(path, marked(&found.robot_toml()).as_bytes())?;
-    }
     if let Some(folder) = &args.report {
         let mut page = Vec::new();
         write_identified_html(found, &mut page)?;
         save(&page_in(folder), &page)?;
+    }
+    let writes_robot = args.out.is_some() || args.urdf.is_some();
+    if let Some(problem) = found.inertia.impossible.clone().filter(|_| writes_robot) {
+        // No other command would read it.
+        let causes = found.implausible.clone();
+        return Err(reachtube::identify::Error::ImpossibleRobot { problem, causes }.into());
+    }
+    if let Some(path) = &args.out {
+        save(path, marked(&found.robot_toml()).as_bytes())?;
     }
     if let (Some(path), Some(urdf)) = (&args.urdf, urdf) {
         let robot = Robot::from_description(&found.description)?;

@@ -93,6 +93,7 @@ fn entries_of(name: &str, fold: &SuiteFold) -> impl Iterator<Item = (usize, RunE
             temperature: None,
             sha256: None,
             simulated: false,
+            noise: None,
             order: *order,
             line: u64::from(*place) + 1,
         };

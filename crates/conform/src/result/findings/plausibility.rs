@@ -33,8 +33,12 @@ fn code(kind: WarningKind) -> Code {
         WarningKind::InitialSetStarts => Code::InitialSetStarts,
         WarningKind::InitialSetOffset => Code::InitialSetOffset,
         WarningKind::InputSetSize => Code::InputSetSize,
+        WarningKind::InputSetOffset => Code::InputSetOffset,
+        WarningKind::InputSetZero => Code::InputSetZero,
         WarningKind::NoiseSetSize => Code::NoiseSetSize,
         WarningKind::Unexplained => Code::Unexplained,
+        WarningKind::FrictionRange => Code::FrictionRange,
+        WarningKind::FallingFriction => Code::FallingFriction,
         WarningKind::Cause => Code::Cause,
         WarningKind::Overfitted => Code::Overfitted,
     }
@@ -78,12 +82,28 @@ fn words(kind: WarningKind) -> &'static str {
         WarningKind::InputSetSize => {
             "U reaches beyond the recorded inputs (reach, largest recorded input)"
         }
+        WarningKind::InputSetOffset => {
+            "U lies away from 0 by more than its radius: a constant torque that the model does not \
+             have, such as a counterweight or an offset of the sensor (centre, radius)"
+        }
+        WarningKind::InputSetZero => {
+            "U is 0 although the input has an error, which the U of other joints covers (U, RMS \
+             error of the input)"
+        }
         WarningKind::NoiseSetSize => {
             "V is so wide that hardly any motion is left to explain (width, range of the \
              recordings)"
         }
         WarningKind::Unexplained => {
             "The nominal motions explain little of the recorded velocities (part of the variance)"
+        }
+        WarningKind::FrictionRange => {
+            "The recordings are faster than the ones that friction was fitted to, where it is not \
+             known (highest speed, highest speed of the fit)"
+        }
+        WarningKind::FallingFriction => {
+            "Viscous friction falls with speed, so that nominal motions may run away (from which \
+             speed on, highest speed of the joint)"
         }
         WarningKind::Cause | WarningKind::Overfitted => "",
     }

@@ -29,12 +29,16 @@ fn outcome(is_conformant: bool) -> (Severity, Code) {
 impl From<&Lost> for Finding {
     /// Reports where a reachable set ends before its suite.
     fn from(lost: &Lost) -> Self {
-        let Lost { case, time, state } = lost;
+        let Lost { case, time, state, nominal } = lost;
+        let (code, what) = match nominal {
+            true => (Code::Unstable, "the nominal motion runs away after"),
+            false => (Code::SetLost, "the reachable set could not be computed beyond"),
+        };
         let text = format!(
-            "{case}: the reachable set could not be computed beyond {time:.3} s, where {state} \
-             grew fastest; later samples are not enclosed."
+            "{case}: {what} {time:.3} s, where {state} grew fastest; later samples are not \
+             enclosed."
         );
-        Self::new(Severity::Failure, Code::SetLost, text)
+        Self::new(Severity::Failure, code, text)
             .at(case)
             .with("time", *time)
             .remedied_by(Remedy::until(*time))
@@ -85,12 +89,13 @@ impl Finding {
 
     /// Returns where the first reachable set ends before its suite, and the number of the others.
     pub(crate) fn lost_in_brief(lost: &[Lost]) -> Option<String> {
-        let (Lost { case, time, state }, others) = lost.split_first()?;
+        let (Lost { case, time, state, nominal }, others) = lost.split_first()?;
         let more = match others.len() {
             0 => String::new(),
             others => format!("; so do {others} more"),
         };
-        Some(format!("{case}: the set ends at {time:.3} s, where {state} grew fastest{more}"))
+        let what = if *nominal { "the nominal motion runs away after" } else { "the set ends at" };
+        Some(format!("{case}: {what} {time:.3} s, where {state} grew fastest{more}"))
     }
 
     /// The verdict on recordings that are compared with a model.

@@ -95,7 +95,8 @@ fn with_the_same_torques(robot: &Robot) -> Option<Vec<f64>> {
     let prior = vec![Matrix4::from_diagonal(&PRIOR); n];
     let motor = |index: usize| PositiveColumn { index, prior: MOTOR_PRIOR };
     let motors: Vec<PositiveColumn> = (PER_LINK * n..columns).map(motor).collect();
-    let program = BodyProgram { data: &data, prior: &prior, strength: 1.0, positive: &motors };
+    let program =
+        BodyProgram { data: &data, prior: &prior, strength: 1.0, positive: &motors, rising: &[] };
     let near = program.solve()?.x;
     // The nearest parameters with exactly these torques.
     let misfit = &data.z - &data.r * &near;

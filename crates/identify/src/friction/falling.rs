@@ -1,0 +1,188 @@
+//! Viscous friction that falls with speed where it was not shown, and the nearest that rises.
+
+use crate::bodies::{BodyProgram, RisingFriction};
+use crate::regression::singular::Singular;
+use crate::regression::triangular_factor::TriangularFactor;
+use nalgebra::{DMatrix, DVector};
+use reachtube_robot::Robot;
+use reachtube_robot::friction::Viscous;
+use serde::Serialize;
+
+/// Weight of the prior of friction that must rise, in squared standard deviations: rounding only.
+const STRENGTH: f64 = 1e-6;
+
+/// Singular values below this part of the largest count as zero.
+const RANK_TOLERANCE: f64 = 1e-7;
+
+/// Viscous friction by least squares that falls with speed below a speed that the joint may reach.
+/// Friction that rises up to there was used in its place.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FallingFriction {
+    /// Name of the joint.
+    pub joint: String,
+    /// Coefficients v1 to v3 of least squares.
+    pub viscous: [f64; 3],
+    /// Speed from which on they fall \[rad/s\].
+    pub falls_beyond: f64,
+    /// Speed up to which the friction that was used rises \[rad/s\].
+    pub limit: f64,
+    /// Root mean square of the residuals \[N m\] of least squares, and of the friction that was
+    /// used.
+    pub residuals: [f64; 2],
+}
+
+impl FallingFriction {
+    /// Returns the speed from which on viscous friction falls, if it does below `limit` \[rad/s\].
+    pub(crate) fn speed([v1, v2, v3]: [f64; 3], limit: f64) -> Option<f64> {
+        Viscous { v1, v2, v3 }.falls_beyond(limit)
+    }
+
+    /// Describes it in a sentence.
+    pub(crate) fn warning(&self, robot: &Robot) -> String {
+        let Self { joint, falls_beyond, limit, residuals: [plain, used], .. } = self;
+        let own = robot.joints().iter().find(|own| own.name == *joint);
+        let kind = own.map(|own| own.kind).unwrap_or_default();
+        let (speed, force) = (kind.velocity_unit(), kind.force_unit());
+        format!(
+            "viscous friction of {joint}: least squares falls with speed beyond \
+             {falls_beyond:.2} {speed}, and would drive the joint at higher speeds; friction that \
+             rises up to {limit:.2} {speed} is used, with a residual of {used:.3} {force} in place \
+             of {plain:.3} {force}"
+        )
+    }
+}
+
+/// Returns the condition on viscous friction with coefficients `viscous` by least squares.
+pub(crate) fn rising(
+    columns: [Option<usize>; 3],
+    known: [f64; 3],
+    viscous: [f64; 3],
+    limit: f64,
+) -> RisingFriction {
+    let [v1, v2, v3] = viscous.map(f64::abs);
+    let size = v1.max(v2 * limit).max(3.0 * v3 * limit * limit).max(f64::MIN_POSITIVE);
+    RisingFriction { columns, known, limit, size }
+}
+
+/// Returns the solution of least squares under conditions on friction. Rows of `factor` have errors
+/// of standard deviation `deviation`.
+pub(crate) fn nearest(
+    factor: &TriangularFactor,
+    deviation: f64,
+    conditions: &[RisingFriction],
+) -> DVector<f64> {
+    let p = factor.r.ncols();
+    let friction: Vec<usize> = conditions.iter().flat_map(|of| of.columns).flatten().collect();
+    let others: Vec<usize> = (0..p).filter(|column| !friction.contains(column)).collect();
+    // The columns of the friction come last, so that the last rows are about it alone; the others
+    // are taken in the directions that the rows determine.
+    let directions = determined(&factor.r, &others);
+    let free = directions.ncols();
+    let mut map = DMatrix::zeros(p, free + friction.len());
+    others.iter().enumerate().for_each(|(row, column)| {
+        map.view_mut((*column, 0), (1, free)).copy_from(&directions.row(row));
+    });
+    friction.iter().enumerate().for_each(|(k, column)| map[(*column, free + k)] = 1.0);
+    let mapped = factor.with_mapped_columns(&map);
+    let k = friction.len();
+    let scale = 1.0 / deviation;
+    let data = TriangularFactor {
+        r: scale * mapped.r.view((free, free), (k, k)),
+        z: scale * mapped.z.rows(free, k),
+        residual: scale * mapped.residual,
+    };
+    let place = |column: usize| friction.iter().position(|own| *own == column);
+    let own = |of: &RisingFriction| RisingFriction {
+        columns: of.columns.map(|column| column.and_then(place)),
+        ..*of
+    };
+    let rising: Vec<RisingFriction> = conditions.iter().map(own).collect();
+    let program =
+        BodyProgram { data: &data, prior: &[], strength: STRENGTH, positive: &[], rising: &rising };
+    let found = program.solve().map_or_else(|| program.start(), |solution| solution.x);
+    let found = found.rows(0, k).into_owned();
+    // The others by least squares with this friction.
+    let left = mapped.z.rows(0, free) - mapped.r.view((0, free), (free, k)) * &found;
+    let own = mapped.r.view((0, 0), (free, free)).solve_upper_triangular(&left);
+    let own = own.unwrap_or_else(|| DVector::zeros(free));
+    let mut y = DVector::zeros(free + k);
+    y.rows_mut(0, free).copy_from(&own);
+    y.rows_mut(free, k).copy_from(&found);
+    map * y
+}
+
+/// Returns the directions of the parameters `columns` that rows with the factor `r` determine.
+fn determined(r: &DMatrix<f64>, columns: &[usize]) -> DMatrix<f64> {
+    let own = r.select_columns(columns);
+    let largest = own.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
+    let inverse = |norm: f64| if norm > 1e-12 * largest { 1.0 / norm } else { 0.0 };
+    let unit = DVector::from_iterator(
+        columns.len(),
+        own.column_iter().map(|column| inverse(column.norm())),
+    );
+    let unit = DMatrix::from_diagonal(&unit);
+    if columns.is_empty() {
+        return DMatrix::zeros(0, 0);
+    }
+    let Singular { values, v, .. } = Singular::of(&(own * &unit));
+    let cut = RANK_TOLERANCE * values.max();
+    let kept: Vec<usize> = (0..values.len()).filter(|k| values[*k] > cut).collect();
+    unit * v.select_columns(&kept)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of a joint with Coulomb friction 2 N m, inertia 1.5 kg m² and this viscous friction,
+    /// moved up to `speed` \[rad/s\]: columns sign, q̇, q̇², q̇³, q̈.
+    fn rows(viscous: [f64; 3], speed: f64) -> TriangularFactor {
+        let row = |k: usize| {
+            let t = 0.01 * k as f64;
+            let (qd, qdd) = (speed * t.sin(), speed * t.cos() + (3.0 * t).sin());
+            let columns = [qd.signum(), qd, qd * qd, qd.powi(3), qdd];
+            let x = [2.0, viscous[0], viscous[1], viscous[2], 1.5];
+            let torque: f64 = columns.iter().zip(x).map(|(a, x)| a * x).sum();
+            [&columns[..], &[torque]].concat()
+        };
+        let rows: Vec<f64> = (1..2000).flat_map(row).collect();
+        TriangularFactor::from_rows(&rows, 5)
+    }
+
+    fn condition(limit: f64) -> RisingFriction {
+        rising([Some(1), Some(2), Some(3)], [0.0; 3], [3.0, 0.5, 1.0], limit)
+    }
+
+    #[test]
+    fn friction_that_rises_is_found_as_least_squares_finds_it() {
+        for viscous in [[3.0, 0.1, -0.15], [3.0, 0.0, 1.0], [0.5, -0.1, 0.3]] {
+            let found = nearest(&rows(viscous, 1.0), 1.0, &[condition(2.0)]);
+            let expected = [2.0, viscous[0], viscous[1], viscous[2], 1.5];
+            for (found, expected) in found.iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-3, "{viscous:?}: {found} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn friction_that_falls_is_replaced_by_the_nearest_that_rises() {
+        for viscous in [[3.0, 0.0, -1.0], [3.0, 1.5, 0.0], [2.0, -0.8, -0.4], [-1.0, 0.0, 2.0]] {
+            let factor = rows(viscous, 1.0);
+            let found = nearest(&factor, 1.0, &[condition(2.0)]);
+            let [v1, v2, v3] = [found[1], found[2], found[3]];
+            assert_eq!(FallingFriction::speed([v1, v2, v3], 2.0), None, "{viscous:?}");
+            // Nothing that rises is nearer: neither a smaller slope of any kind nor a mixture.
+            let cost = factor.sum_of_squares(&found);
+            let tried = (0..4000).map(|k| {
+                let step = |base: u64| ((k * base % 4001) as f64 / 2000.5 - 1.0) * 0.4;
+                let mut x = found.clone();
+                (x[1], x[2], x[3]) = (v1 + step(977), v2 + step(1601), v3 + step(2503));
+                x
+            });
+            let rises =
+                |x: &DVector<f64>| FallingFriction::speed([x[1], x[2], x[3]], 2.0).is_none();
+            let best = tried.filter(rises).map(|x| factor.sum_of_squares(&x));
+            assert!(best.fold(f64::INFINITY, f64::min) > cost - 1e-3, "{viscous:?}");
+        }
+    }
+}

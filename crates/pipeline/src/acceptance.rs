@@ -1,0 +1,60 @@
+//! Whether a model is of use, and carries over to motions that it has not seen.
+
+use crate::build::Built;
+use crate::choices::{LARGEST_GROWTH, LARGEST_RATIO};
+
+impl Built {
+    /// Returns whether the sets were proved to enclose every window, limit every joint, are narrow
+    /// enough at the horizon, and carry over to what was held out, and nothing contradicts the
+    /// recordings.
+    #[must_use]
+    pub fn is_useful(&self) -> bool {
+        self.is_narrow() && self.growth_not_accepted().is_none() && self.contradiction().is_none()
+    }
+
+    /// Returns whether the sets were proved, limit every joint, and are narrow enough.
+    fn is_narrow(&self) -> bool {
+        let model = &self.answer.model;
+        let worst = model.usefulness.as_ref().and_then(|said| said.worst());
+        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
+    }
+
+    /// Returns half a joint's set by the joint's displacement that is accepted at most.
+    #[must_use]
+    pub fn largest_ratio(&self) -> f64 {
+        self.choices.largest_ratio.unwrap_or(LARGEST_RATIO)
+    }
+
+    /// Returns the factor by which a joint's set may have to grow for motions that were held out.
+    #[must_use]
+    pub fn largest_growth(&self) -> f64 {
+        self.choices.largest_growth.unwrap_or(LARGEST_GROWTH)
+    }
+
+    /// Returns the joint, from 0, whose set would have to grow most for motions that were held out,
+    /// with the factor, if it is not accepted. Without a window that was held out there is none.
+    pub(crate) fn growth_not_accepted(&self) -> Option<(usize, f64)> {
+        let growth = self.held_out.growth.iter().copied().enumerate();
+        let (joint, factor) = growth.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_compared = self.held_out.windows > 0;
+        (is_compared && factor > self.largest_growth()).then_some((joint, factor))
+    }
+
+    /// Returns why a model that was proved and is not vacuous is of no use, in a few words.
+    pub(crate) fn why_useless(&self) -> String {
+        match self.growth_not_accepted().filter(|_| self.is_narrow()) {
+            None => "too wide to be of use".into(),
+            Some((joint, factor)) => {
+                let name = &self.answer.model.robot.joints[joint].name;
+                match factor.is_finite() {
+                    true => format!(
+                        "held-out motions need {factor:.1} times the set of {name} (at most {} is \
+                         accepted),",
+                        self.largest_growth()
+                    ),
+                    false => "held-out motions could not be followed".into(),
+                }
+            }
+        }
+    }
+}
