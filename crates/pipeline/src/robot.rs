@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use reachtube_conform::Finding;
+use reachtube_conform::result::Severity;
 use reachtube_identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered,
 };
@@ -71,8 +72,8 @@ impl Evidence<'_> {
         let chosen = self.chosen(described, given);
         let mut chosen = chosen.map_err(|error| error.because(&contradictions))?;
         // An identification tells columns that are wrong from a description that is.
-        if chosen.findings.is_empty() {
-            chosen.findings = contradictions;
+        if chosen.findings.iter().all(|finding| finding.severity < Severity::Failure) {
+            chosen.findings.splice(0..0, contradictions);
         }
         Ok(chosen)
     }
