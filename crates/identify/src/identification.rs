@@ -7,8 +7,8 @@ use crate::inertia::description::friction_errors;
 use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
 use crate::law_gain::{LawGain, held_out_residuals};
-use crate::plausibility::Implausible;
 use crate::plausibility::gain::Gain;
+use crate::plausibility::implausible::Implausible;
 use crate::plausibility::offset::PositionOffset;
 use crate::plausibility::validation::{
     costly_links, poor_prediction, still_recordings, useless_simulation,

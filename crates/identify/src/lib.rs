@@ -78,7 +78,7 @@ pub use gravity::GravityFit;
 pub use identification::{Identification, identify};
 pub use inertia::{BaseParameter, InertiaFit, JointInertia, PhysicalFit};
 pub use law_gain::LawGain;
-pub use plausibility::{Gain, Implausible, PositionOffset};
+pub use plausibility::{Gain, Implausible, PositionOffset, WrongColumns};
 pub use regression::solution::Solution;
 pub use regression::triangular_factor::TriangularFactor;
 pub use settings::{IdentifySettings, ModelSettings, Prior, WarmingChoice};

@@ -80,7 +80,7 @@ pub fn build(
         trial: &trial,
     };
     let chosen = evidence.choose(robot, given.identify)?;
-    let Nominal { robot, logs, is_identified, reason, findings } = chosen;
+    let Nominal { robot, logs, is_identified, reason, findings, .. } = chosen;
     let mut findings = unless_accepted(findings, given);
     chooser.choose("identify", is_identified.to_string(), reason);
     chooser.choices.identify = Some(is_identified);

@@ -1,11 +1,12 @@
 use std::collections::BTreeSet;
 
-use reachtube_conform::result::{Code, Severity};
+use reachtube_conform::result::Code;
 use reachtube_conform::{Answer, Check, Finding, Silent};
 use reachtube_recordings::{MemoryRuns, RunSource};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::findings::warning;
 use crate::windows::Prepared;
 
 /// Windows on a page, besides the deciding ones.
@@ -70,8 +71,7 @@ impl HeldOut {
             None => return None,
         };
         let numbers = [("part".to_string(), part)].into();
-        let finding = Finding::new(Severity::Warning, Code::HeldOutRates, text);
-        Some(Finding { numbers, ..finding })
+        Some(Finding { numbers, ..warning(Code::HeldOutRates, &text) })
     }
 
     /// Compares a model with prepared recordings. Returns the windows that leave its sets, too.

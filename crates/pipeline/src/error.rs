@@ -89,7 +89,8 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 impl Error {
     /// Names the most likely cause of an error, if one is known.
     pub(crate) fn because(self, causes: &[Finding]) -> Self {
-        let texts: Vec<&str> = causes.iter().map(|cause| cause.text.as_str()).collect();
+        let texts: Vec<&str> =
+            causes.iter().map(|cause| cause.text.trim_end_matches('.')).collect();
         match &texts[..] {
             [] => self,
             texts => Self::Because { cause: texts.join("; "), error: Box::new(self) },

@@ -8,20 +8,28 @@ use crate::choices::Choices;
 
 /// Makes the finding that the recordings contradict the robot, so that no model of them is
 /// acceptable.
-pub(crate) fn contradiction(text: String) -> Finding {
-    Finding::new(Severity::Failure, Code::Contradiction, text)
+pub(crate) fn contradiction(text: &str) -> Finding {
+    Finding::new(Severity::Failure, Code::Contradiction, sentence(text))
 }
 
 /// Makes the finding about an implausible result of an identification. Only columns that are wrong
 /// make the model unacceptable.
 pub(crate) fn implausible(result: &Implausible) -> Finding {
-    let severity = if result.is_fault { Severity::Failure } else { Severity::Warning };
-    Finding::new(severity, Code::Contradiction, result.text.clone())
+    let severity = if result.columns.is_some() { Severity::Failure } else { Severity::Warning };
+    Finding { severity, ..contradiction(&result.text) }
 }
 
-/// Makes the finding that a recording was moved by whole turns.
-pub(crate) fn moved(text: &str) -> Finding {
-    Finding::new(Severity::Warning, Code::TurnsMoved, text)
+/// Makes a warning of a clause.
+pub(crate) fn warning(code: Code, text: &str) -> Finding {
+    Finding::new(Severity::Warning, code, sentence(text))
+}
+
+/// Ends a clause about recordings, whose first word may be a path, as a sentence.
+fn sentence(text: &str) -> String {
+    let first = text.chars().next().map_or(0, char::len_utf8);
+    let is_path = text.split(' ').next().is_some_and(|word| word.contains(['/', '\\', '.']));
+    let (first, rest) = text.split_at(if is_path { 0 } else { first });
+    format!("{}{rest}.", first.to_uppercase())
 }
 
 /// Makes contradictions warnings if factors of the torques are given: they state that the torques

@@ -43,7 +43,7 @@ pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<Finding
         let text = format!(
             "the torque of {name} is opposite to what the description needs: its sign may be wrong"
         );
-        found.push(Finding { place: Some(name.clone()), ..contradiction(text) });
+        found.push(Finding { place: Some(name.clone()), ..contradiction(&text) });
     }
     let own = (0..n).map(fit).filter(|own| own.value > OPPOSITE);
     let mut gains: Vec<f64> = own.map(|own| own.gain).collect();
@@ -52,7 +52,7 @@ pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<Finding
     if !(1.0 / FACTOR..=FACTOR).contains(&median) {
         let text = format!(
             "the recorded torques are {median:.2} times what the description needs: they may be \
-             currents, or of another unit, or the description is of another robot"
+             currents, or of another unit, or the description may be of another robot"
         );
         let remedy = Remedy {
             setting: "gains".into(),
@@ -63,7 +63,7 @@ pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<Finding
                     .into(),
         };
         let numbers = [("factor".to_string(), median)].into();
-        found.push(Finding { numbers, remedy: Some(remedy), ..contradiction(text) });
+        found.push(Finding { numbers, remedy: Some(remedy), ..contradiction(&text) });
     }
     found
 }
@@ -134,7 +134,7 @@ mod tests {
             contradictions(&robot, &[log]).iter().map(ToString::to_string).collect()
         };
         assert_eq!(found(1.0), Vec::<String>::new());
-        assert!(found(-1.0)[0].contains("hinge is opposite"), "{:?}", found(-1.0));
+        assert!(found(-1.0)[0].starts_with("The torque of hinge is opposite"), "{:?}", found(-1.0));
         assert!(found(0.1)[0].contains("0.10 times"), "{:?}", found(0.1));
     }
 }

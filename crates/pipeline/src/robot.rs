@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use reachtube_conform::Finding;
+use reachtube_conform::result::Severity;
 use reachtube_identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered,
 };
-use reachtube_identify::{IdentifySettings, ModelSettings, identify};
+use reachtube_identify::{IdentifySettings, Implausible, ModelSettings, WrongColumns, identify};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
@@ -39,6 +40,8 @@ pub(crate) struct Nominal {
     pub reason: String,
     /// What contradicts the robot or rigid-body dynamics in the recordings.
     pub findings: Vec<Finding>,
+    /// Whether an identification found that columns are exchanged.
+    pub is_swapped: bool,
 }
 
 /// What the choice of the robot needs.
@@ -70,9 +73,10 @@ impl Evidence<'_> {
         let contradictions = self.contradictions(described)?;
         let chosen = self.chosen(described, given);
         let mut chosen = chosen.map_err(|error| error.because(&contradictions))?;
-        // An identification tells columns that are wrong from a description that is.
-        if chosen.findings.is_empty() {
-            chosen.findings = contradictions;
+        // An identification tells exchanged columns, and the description a sign and a scale.
+        if !chosen.is_swapped && !contradictions.is_empty() {
+            chosen.findings.retain(|finding| finding.severity < Severity::Failure);
+            chosen.findings.splice(0..0, contradictions);
         }
         Ok(chosen)
     }
@@ -131,9 +135,9 @@ impl Evidence<'_> {
             percent(error),
             percent(after)
         );
-        let findings = identified.findings.clone();
+        let (findings, is_swapped) = (identified.findings.clone(), identified.is_swapped);
         let best = if after < BETTER * error { identified } else { nominal };
-        Ok(Nominal { reason, findings, ..best })
+        Ok(Nominal { reason, findings, is_swapped, ..best })
     }
 
     /// Returns what contradicts the description in the recorded torques.
@@ -165,7 +169,9 @@ impl Evidence<'_> {
         let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
         let nominal = self.prepared(&Robot::from_description(&found.description)?)?;
         let findings = found.implausible.iter().map(implausible).collect();
-        Ok(Nominal { is_identified: true, findings, ..nominal })
+        let swapped = |result: &Implausible| result.columns == Some(WrongColumns::Swapped);
+        let is_swapped = found.implausible.iter().any(swapped);
+        Ok(Nominal { is_identified: true, findings, is_swapped, ..nominal })
     }
 
     /// Prepares the motions for a robot.
@@ -174,7 +180,8 @@ impl Evidence<'_> {
             self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         let logs = prepare_for(&raw, robot, self.torque, self.settings, self.cut_off)?;
         let (reason, findings) = (String::new(), Vec::new());
-        Ok(Nominal { robot: robot.clone(), logs, is_identified: false, reason, findings })
+        let (is_identified, is_swapped) = (false, false);
+        Ok(Nominal { robot: robot.clone(), logs, is_identified, reason, findings, is_swapped })
     }
 
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use reachtube_conform::Finding;
+use reachtube_conform::result::Code;
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
 use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated};
 use reachtube_robot::Robot;
@@ -12,7 +13,7 @@ use reachtube_robot::Robot;
 use crate::choices::Choices;
 use crate::chooser::Chooser;
 use crate::error::{Error, Result};
-use crate::findings::moved;
+use crate::findings::warning;
 use crate::held_out::Recording;
 use crate::kinds::{Kind, motions};
 
@@ -78,7 +79,8 @@ impl Sorted {
         let [rest, one_joint] =
             [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
-        let findings = raw.iter().flat_map(|log| log.moved.iter().map(|text| moved(text)));
+        let findings =
+            raw.iter().flat_map(|log| log.moved.iter().map(|text| warning(Code::TurnsMoved, text)));
         let findings = findings.collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         Ok(Self { rest, one_joint, motions, notes, findings, simulated })

@@ -16,7 +16,7 @@ fn arm(factor: f64) -> String {
             "[[joint]]\nname = \"{name}\"\nplacement = {{ translation = [0.0, 0.0, {height}] }}\n\
              axis = [0.0, 1.0, 0.0]\nmass = {mass}\ncom = [0.0, 0.0, -0.2]\n\
              inertia = [{inertia}, 0.0, 0.0, {inertia}, 0.0, {inertia}]\n\
-             friction = {{ viscous = [0.3, 0.0, 0.0] }}\n"
+             position_limits = [-3.1, 3.1]\nfriction = {{ viscous = [0.3, 0.0, 0.0] }}\n"
         )
     };
     let joints = [joint("shoulder", 1.0, 3.0, 0.05), joint("elbow", -0.4, 2.0, 0.02)].concat();
@@ -85,13 +85,13 @@ fn logs_that_cannot_be_read_are_refused_with_the_cause() {
     type Case<'a> = (&'a str, &'a dyn Fn(&mut Row, usize, usize));
     let cases: [Case; 6] = [
         ("the times look like milliseconds", &|row, _, _| row[0] *= 1e3),
-        ("degrees", &|row, _, _| row[1..5].iter_mut().for_each(|cell| *cell *= 360.0 / TAU)),
-        ("log_1.csv:102: joint 2: tau2 is 1e300", &|row, k, number| {
+        ("give q in rad", &|row, _, _| row[1..5].iter_mut().for_each(|cell| *cell *= 360.0 / TAU)),
+        ("log_1.csv: joint 2: tau is 1e300 N m", &|row, k, number| {
             if (k, number) == (100, 1) {
                 row[6] = 1e300;
             }
         }),
-        ("log_1.csv:102: joint 1: q1 is 1e300", &|row, k, number| {
+        ("log_1.csv: joint 1: |q| reaches 1.0e300", &|row, k, number| {
             if (k, number) == (100, 1) {
                 row[1] = 1e300;
             }
@@ -114,14 +114,14 @@ fn logs_that_contradict_the_robot_give_no_acceptable_model() {
     let lab = lab();
     type Case<'a> = (&'a str, f64, &'a dyn Fn(&mut Row, usize, usize));
     let cases: [Case; 5] = [
-        ("the torque of elbow is opposite to what the description needs", 1.0, &|row, _, _| {
+        ("The torque of elbow is opposite to what the description needs", 1.0, &|row, _, _| {
             row[6] *= -1.0;
         }),
         ("shoulder and elbow are probably swapped", 1.0, &|row, _, _| row.swap(5, 6)),
-        ("the recorded torques are 0.07 times", 1.0, &|row, _, _| {
+        ("The recorded torques are 0.07 times", 1.0, &|row, _, _| {
             row[5..].iter_mut().for_each(|cell| *cell /= 15.0);
         }),
-        ("or the description is of another robot", 9.0, &|_, _, _| ()),
+        ("or the description may be of another robot", 9.0, &|_, _, _| ()),
         ("swapped", 1.0, &|row, _, _| [1, 3, 5].iter().for_each(|at| row.swap(*at, at + 1))),
     ];
     for (cause, masses, change) in cases {

@@ -1,3 +1,4 @@
+use crate::plausibility::implausible::WrongColumns;
 use crate::prepare::log::PreparedLog;
 use crate::samples::Sampling;
 use reachtube_robot::{JointKind, Robot};
@@ -93,9 +94,15 @@ impl Fault {
         }
     }
 
-    /// Returns whether only the columns can be wrong: zeros and clocks of robots are off a little.
-    pub(super) fn is_certain(&self) -> bool {
-        matches!(self, Self::Sign { .. } | Self::Swap { .. } | Self::Degrees)
+    /// Returns what is wrong with the columns. It is `None` for offsets and lags, because zeros and
+    /// clocks of robots are off a little.
+    pub(super) fn wrong_columns(&self) -> Option<WrongColumns> {
+        match self {
+            Self::Sign { .. } => Some(WrongColumns::Sign),
+            Self::Swap { .. } => Some(WrongColumns::Swapped),
+            Self::Degrees => Some(WrongColumns::Unit),
+            Self::Offset { .. } | Self::Lag { .. } => None,
+        }
     }
 
     /// Returns the size of an offset \[rad\] or a lag \[s\].

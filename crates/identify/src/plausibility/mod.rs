@@ -4,6 +4,7 @@
 pub(crate) mod compensated;
 mod fault;
 pub(crate) mod gain;
+pub(crate) mod implausible;
 pub(crate) mod offset;
 mod scale;
 mod search;
@@ -11,5 +12,5 @@ pub(crate) mod validation;
 pub(crate) mod warnings;
 
 pub use gain::Gain;
+pub use implausible::{Implausible, WrongColumns};
 pub use offset::PositionOffset;
-pub use warnings::Implausible;

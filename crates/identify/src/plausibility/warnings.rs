@@ -3,6 +3,7 @@ use crate::inertia::fit::InertiaFit;
 use crate::plausibility::compensated::input_unit_warning;
 use crate::plausibility::fault::{Columns, Fault};
 use crate::plausibility::gain::{self, Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
+use crate::plausibility::implausible::{Implausible, WrongColumns};
 use crate::plausibility::scale::torque_unit_warning;
 use crate::plausibility::search::find_fault;
 use crate::prepare::log::PreparedLog;
@@ -14,16 +15,6 @@ const SIGNIFICANT: f64 = 4.0;
 
 /// Share of the torque that may stay unexplained without a warning.
 const MAX_UNEXPLAINED: f64 = 0.3;
-
-/// A result that is implausible.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Implausible {
-    /// What is implausible, in a sentence.
-    pub text: String,
-    /// Whether columns that are exchanged, of the wrong sign or of a wrong unit explain it, so that
-    /// the identified values are worth nothing.
-    pub is_fault: bool,
-}
 
 /// The results of a fit to exciting motions whose plausibility is checked.
 pub(crate) struct Checked<'a> {
@@ -78,24 +69,27 @@ impl Checked<'_> {
             torque_unit_warning(self.robot, self.fit, self.logs)
         };
         let has_no_unit = self.compensated && torque_unit.is_some();
-        let implausible = |is_fault: bool| move |text: String| Implausible { text, is_fault };
+        let implausible = |columns| move |text: String| Implausible { text, columns };
         let fault = found
             .map(|found| {
                 let text = found.fault.warning(self.robot, found.clearest);
-                Implausible { text, is_fault: found.fault.is_certain() }
+                Implausible { text, columns: found.fault.wrong_columns() }
             })
-            .or_else(|| if has_no_unit { None } else { inverted() }.map(implausible(true)))
+            .or_else(|| {
+                if has_no_unit { None } else { inverted() }
+                    .map(implausible(Some(WrongColumns::Sign)))
+            })
             .or_else(|| {
                 let (logs, warning) = if has_no_unit { None } else { offset() }?;
                 let is_one = gains.is_empty() || self.gains_agree(&logs);
-                is_one.then(|| implausible(false)(warning))
+                is_one.then(|| implausible(None)(warning))
             });
         let gains = if fault.is_some() || has_no_unit { Vec::new() } else { gains };
         let others = driving.into_iter().chain(gains).chain(unexplained);
         fault
             .into_iter()
-            .chain(torque_unit.map(implausible(true)))
-            .chain(others.map(implausible(false)))
+            .chain(torque_unit.map(implausible(Some(WrongColumns::Unit))))
+            .chain(others.map(implausible(None)))
             .collect()
     }
 

@@ -1,0 +1,20 @@
+/// A result that is implausible.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Implausible {
+    /// What is implausible, in a sentence.
+    pub text: String,
+    /// What is wrong with the columns, so that the identified values are worth nothing; `None` for
+    /// results that may have other causes.
+    pub columns: Option<WrongColumns>,
+}
+
+/// What is wrong with columns of recordings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WrongColumns {
+    /// Columns of a joint have the wrong sign.
+    Sign,
+    /// Columns of two joints are exchanged.
+    Swapped,
+    /// Columns are in a wrong unit.
+    Unit,
+}
