@@ -96,9 +96,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 impl Written<'_> {
     /// Returns the names of the two CSV files with their contents.
     fn contents(&self) -> [(String, Vec<u8>); 2] {
-        let name = |path: &Path| {
-            path.file_name().expect("it was joined").to_string_lossy().into_owned()
-        };
+        let name =
+            |path: &Path| path.file_name().expect("it was joined").to_string_lossy().into_owned();
         let (mut samples, mut tube) = (Vec::new(), Vec::new());
         let in_memory = "memory takes all that is written";
         self.reach.write_samples(&mut samples).expect(in_memory);
