@@ -169,6 +169,6 @@ def nothing(files):
 
 
 def of_record(files):
-    """Names the reachable sets as those of the model as it is now."""
+    """Names the model as it is now in the record of the reachable sets."""
     files.seal()
     files.record()
