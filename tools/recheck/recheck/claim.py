@@ -55,8 +55,8 @@ class Claim:
     def rests_on_inputs(self, error):
         """Notes that inputs were computed in doubles."""
         self.conditions.append(
-            f"the inputs computed here are within {error:g} N m of those that define the model, "
-            f"which is an estimate of rounding and not proved"
+            f"the inputs computed here differ by at most {error:g} N m from the inputs that define "
+            f"the model, which is an estimate of rounding and not proved"
         )
 
     def code(self, code):

@@ -187,6 +187,8 @@ class Costs:
     def _lower_bound(self, weights, per_radius, cost):
         """Returns a proved lower bound of the cost, by weak duality."""
         rows = self.rows + self._limits()
+        if not rows:
+            return arb(0)
         has_centres = self.model.settings["centre"] != "zero"
         of_centre, of_radius = (
             numpy.array([[float(x) for x in getattr(row, name)] for row in rows])
@@ -208,7 +210,7 @@ class Costs:
             for j, far in enumerate(furthest):
                 rest = sum((a * row.of_centre[j] for a, row in used), arb(0))
                 total = total - abs(rest) * far
-        return (total + fixed).lower() if total.is_finite() else arb(0)
+        return max((total + fixed).lower(), arb(0)) if total.is_finite() else arb(0)
 
     def _furthest_centres(self, most):
         """Bounds |c| of all sets that cost at most as much as these."""

@@ -9,9 +9,9 @@ The set at a sample is c + start a + (first + second) b + rest z, all factors in
 has the columns of X0. `first` and `second` have one column each for each input and step: an input
 that is held over the step moves the state by (first + second) b, any other one by first b + second
 b' with b and b' of their own. The numbers z are what l, rounding and doubtful inputs do, and depend
-on the motion. Hence every motion is within the sum of all magnitudes of c, and one motion gets at
-least as far as that of `start` and `first + second` less that of `rest`: all a and b may be chosen,
-and z takes back no more.
+on the motion. Hence every motion is within the sum of all magnitudes of c. Since all a and b may be
+chosen, one motion gets at least as far as the magnitudes of `start` and `first + second` add up to,
+less what `rest` can take back.
 
 Generators are doubles. Each product with a matrix rounds by at most p u times the product of the
 magnitudes for p terms, and that goes into `rest`.
@@ -95,7 +95,8 @@ class Flowpipe:
         moved = column(place) + phi * off + drift
         own = about.gain * _diagonal(self.push)
         doubtful = about.gain * _diagonal(self.doubt)
-        bent = arb_mat([*[[arb(0)] * n] * n, *(self.expansion.inverse * _diagonal(radius)).tolist()])
+        accelerations = self.expansion.inverse * _diagonal(radius)
+        bent = arb_mat([*[[arb(0)] * n] * n, *accelerations.tolist()])
         self._propagate(phi, [own, doubtful, bent], span, about.slope)
         self._set_centre(moved, self.box)
 

@@ -72,7 +72,7 @@ def read_model(path, any_run=False):
     try:
         model = _model(content, text)
         return _of_any_run(model, content.get("any_run")) if any_run else model
-    except (KeyError, TypeError, AttributeError) as error:
+    except (KeyError, TypeError, AttributeError, ValueError, IndexError) as error:
         raise BadInput(f"{path}: {error!r} is missing or has the wrong form") from error
     except BadInput as error:
         raise BadInput(f"{path}: {error}") from error

@@ -3,13 +3,14 @@
 A row is a suite at one sample in one state. It holds if all its recorded values are proved to be
 reachable: motions of the model get at least as far on both sides, and everything in between is
 reached too, since starts and disturbances can be changed from one motion to the other without a
-jump. It fails if a value is outside the enclosure of all motions. In between it is undecided.
+jump. It fails if a value is outside the enclosure of all motions, with its ends rounded outward to
+doubles: the model claims a computed outer set, whose ends are doubles. In between it is undecided.
 
 Disturbances that are held over each step are enough for the motions; the enclosure is for all
 measurable ones.
 """
 
-from .balls import arb
+from .balls import arb, up
 from .expansion import Expansion
 from .flowpipe import Flowpipe, Lost
 from .hulls import extremes, state_name
@@ -68,7 +69,8 @@ def _judge_row(model, case, k, i, sides, hull, tally):
         (arb(high) - centre, "above", high_run), (centre - arb(low), "below", low_run)
     ):
         inside, outside = hull.inner[i] + noise - value, hull.outer[i] + noise - value
-        if outside < 0:
+        end = (centre if side == "above" else -centre) + hull.outer[i] + noise
+        if (high if side == "above" else -low) > up(end):
             found.append((Verdict.FAILS, outside, side, run))
         elif inside >= 0 and hull.inner[i] >= 0:
             found.append((Verdict.HOLDS, None, side, run))

@@ -1,8 +1,11 @@
 """Reading of the polynomials of a model that is not linear."""
 
+import re
 from dataclasses import dataclass
 
 import numpy
+
+from .errors import BadInput
 
 
 @dataclass(frozen=True)
@@ -24,9 +27,18 @@ class Polynomials:
         for joint in content["acceleration"]:
             exponents = numpy.array([term[0] for term in joint], dtype=int)
             coefficients = numpy.array([float(term[1]) for term in joint])
-            terms.append((exponents.reshape(len(joint), len(names)), coefficients))
+            if exponents.shape != (len(joint), len(names)) or (exponents < 0).any() or (
+                not numpy.isfinite(coefficients).all()
+            ):
+                raise BadInput("acceleration has a term that does not fit its variables")
+            terms.append((exponents, coefficients))
         variables = []
         for name in names:
-            kind = name.rstrip("0123456789")
-            variables.append((kind, int(name[len(kind):]) - 1))
-        return cls(joints, numpy.array(content["origin"], dtype=float), terms, variables)
+            known = re.fullmatch(r"(qd|q|s|c|u|one)([0-9]+)", name)
+            if not known or not 1 <= int(known[2]) <= joints:
+                raise BadInput(f"variables has {name!r}, which is unknown")
+            variables.append((known[1], int(known[2]) - 1))
+        origin = numpy.array(content["origin"], dtype=float)
+        if len(terms) != joints or origin.shape != (len(names),):
+            raise BadInput("acceleration or origin does not fit the joints and the variables")
+        return cls(joints, origin, terms, variables)

@@ -30,7 +30,8 @@ CONTENT = {
     "initial_set": {"centre": [0.01, 0.0, 0.0, -0.02], "radius": [0.02, 0.01, 0.05, 0.04]},
     "input_set": {"centre": [0.1, 0.0], "radius": [0.5, 0.3]},
     "settings": {
-        "torque": "compensated", "disturbance": "sample", "states": "all", "nominal": "mean", "centre": "free",
+        "torque": "compensated", "disturbance": "sample", "states": "all", "nominal": "mean",
+        "centre": "free",
         "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]},
     },
     "robot": ROBOT,
