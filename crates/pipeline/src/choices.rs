@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use reachtube_conform::Group;
 use reachtube_conform::settings::Equations;
+use reachtube_conform::{Group, Model};
 use reachtube_recordings::Torque;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -11,6 +11,9 @@ use crate::error::{Error, Result};
 
 /// What the comment with the digest of the values begins with.
 const DIGEST: &str = "the reasons belong to the values with the digest ";
+
+/// Half a joint's set by the joint's displacement that is accepted by default.
+pub(crate) const LARGEST_RATIO: f64 = 0.5;
 
 /// Largest number of columns of a comment.
 const COLUMNS: usize = 96;
@@ -126,6 +129,14 @@ impl Choices {
         }
         choices.data.iter_mut().for_each(|path| *path = folder.join(&*path));
         Ok(choices)
+    }
+
+    /// Returns whether the sets of a model were proved, limit every joint, and are narrow enough at
+    /// the horizon.
+    pub(crate) fn accept(&self, model: &Model) -> bool {
+        let worst = model.usefulness.as_ref().and_then(|said| said.worst());
+        let largest = self.largest_ratio.unwrap_or(LARGEST_RATIO);
+        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= largest)
     }
 
     /// Replaces choices by the ones that `given` has. Reasons are about values, and are dropped

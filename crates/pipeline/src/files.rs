@@ -12,6 +12,7 @@ impl Built {
     /// Returns the answer as JSON, as docs/output.schema.json describes it.
     #[must_use]
     pub fn to_json(&self) -> Value {
+        let findings = [self.answer.findings(), self.remedies.clone()].concat();
         json!({
             "useful": self.is_useful(),
             "conformant": self.answer.holds(),
@@ -21,6 +22,8 @@ impl Built {
                 "windows": self.held_out.windows,
                 "rows": self.held_out.rows,
                 "outside": self.held_out.outside,
+                "motions": self.held_out.motions,
+                "factor": self.held_out.factor,
                 "failure": self.held_out.failure,
             },
             "horizons": self.horizons.iter().map(|widths| json!({
@@ -28,7 +31,7 @@ impl Built {
             })).collect::<Vec<Value>>(),
             "choices": self.made,
             "warnings": self.warnings,
-            "findings": self.answer.findings(),
+            "findings": findings,
         })
     }
 

@@ -11,6 +11,7 @@ use crate::choices::Choices;
 use crate::chooser::Chooser;
 use crate::error::{Error, Result};
 use crate::held_out::Recording;
+use crate::journal::data_digest;
 use crate::kinds::{Kind, motions};
 
 /// Recordings by what they are.
@@ -22,6 +23,8 @@ pub(crate) struct Sorted {
     pub notes: Vec<String>,
     /// Whether a recording is marked as simulated.
     pub simulated: bool,
+    /// The digest of all recordings.
+    pub digest: String,
 }
 
 impl Sorted {
@@ -54,6 +57,7 @@ impl Sorted {
         let known: Vec<Option<String>> =
             moving.iter().map(|log| known.get(&log.file).cloned()).collect();
         let names = motions(&moving, &known);
+        let digest = data_digest(&raw, &names);
         let distinct = names.iter().collect::<BTreeSet<_>>().len();
         chooser.choose(
             "data",
@@ -76,7 +80,7 @@ impl Sorted {
             [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        Ok(Self { rest, one_joint, motions, notes, simulated })
+        Ok(Self { rest, one_joint, motions, notes, simulated, digest })
     }
 }
 

@@ -81,6 +81,8 @@ codes! {
     Unexplained = "unexplained",
     /// The most likely cause of other warnings.
     Cause = "cause",
+    /// What a choice that was not applied would give.
+    WouldHelp = "would-help",
     /// The fitted model needs larger sets for motions that it was not fitted to.
     Overfitted = "overfitted",
     /// What the fit of the nominal model changed.
