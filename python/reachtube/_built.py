@@ -56,6 +56,11 @@ class HeldOut:
     """Number of rows (window, sample, state)."""
     outside: int
     """Number of rows outside the reachable set."""
+    motions: int | None
+    """Number of motions; ``None`` if motions were held out in part only."""
+    factor: float | None
+    """Factor of the radii of X0 and U with which the sets enclose all of them, 1 if they do;
+    ``None`` if no factor suffices."""
     failure: str | None
     """Why the motions could not be compared; ``None`` if they were."""
 

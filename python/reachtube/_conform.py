@@ -13,14 +13,14 @@ import numpy.typing as npt
 from . import _reachtube
 from ._abstraction import Abstraction
 from ._arrays import names, real
-from ._logs import Logs, source_for
+from ._logs import Logs, native_of_logs, source_for
 from ._model import Check, Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._renamed import renamed
 from ._robot import Robot
 from ._settings import Data, Group, Notion, Torque, differing, of_conformance
-from .errors import ReachtubeWarning
+from .errors import ReachtubeWarning, SettingError
 
 log = logging.getLogger("reachtube")
 
@@ -28,7 +28,7 @@ log = logging.getLogger("reachtube")
 @renamed(model="paper_model")
 def conform(
     robot: Robot | Abstraction,
-    data: Data,
+    data: Data | Logs,
     *,
     torque: Torque,
     suites: str | Sequence[str] | None = None,
@@ -51,6 +51,7 @@ def conform(
     method: Literal["program", "bisection"] = "program",
     explain: Literal["default"] | tuple[float, float] | None = "default",
     until: float | None = None,
+    horizon: float | None = None,
     max_gap: float | None = None,
     resume: str | PathLike[str] | None = None,
     progress: Progress = None,
@@ -62,7 +63,8 @@ def conform(
     robot
         A robot, or an abstraction of one made by `abstract`.
     data
-        The recordings: a data set, runs, or the path of a folder as for `Recordings.open`.
+        The recordings: a data set, runs, or the path of a folder as for `Recordings.open`. With
+        ``horizon`` they may be logs as they are, as for `model`.
     torque
         What the recorded torques are: ``"compensated"`` (the model's input: gravity and Coulomb
         friction are already subtracted), ``"motor"`` (motor torque at the output side of the
@@ -113,6 +115,10 @@ def conform(
         each recording. The default is not to, but for models that are not linear.
     until
         Samples later than this many seconds after the first are not used.
+    horizon
+        Length of the windows into which recordings are cut, s, each a suite of its own. Torques of
+        motors or links are filtered before, and the robot's gravity and dry friction are taken off
+        them. `check`, `reach` and `report` do the same to theirs.
     max_gap
         Longest time between two samples, s.
     resume
@@ -135,9 +141,10 @@ def conform(
     KeyboardInterrupt
         Within 0.2 s, with nothing written.
     """
+    recordings, preparation, before = _cut(robot, data, torque, horizon, until, max_gap)
     settings = of_conformance(
         robot,
-        torque=torque,
+        torque=torque if preparation is None else "compensated",
         paper_model=paper_model,
         order=order,
         expansion=expansion,
@@ -161,15 +168,41 @@ def conform(
         text, notes = _reachtube.conform(
             robot._native if isinstance(robot, Robot) else None,
             robot._native if isinstance(robot, Abstraction) else None,
-            source(data),
+            recordings,
             names(suites),
             settings,
             names(fit),
             None if pull is None else real("pull", pull),
             None if resume is None else fspath(resume),
+            preparation,
             tell,
         )
-    return told(text, notes, 4)
+    return told(text, [*before, *notes], 4)
+
+
+def _cut(
+    robot: Robot | Abstraction,
+    data: Data | Logs,
+    torque: Torque,
+    horizon: float | None,
+    until: float | None,
+    max_gap: float | None,
+) -> tuple[_reachtube.Source, str | None, list[str]]:
+    """Return recordings, cut into windows where there is a horizon, what was done, and notes."""
+    if horizon is None:
+        return source(data), None, []  # type: ignore[arg-type]
+    if not 0 < real("horizon", horizon) < float("inf"):
+        raise SettingError(f"horizon is {horizon} s; it must be above 0")
+    if until is not None:
+        raise SettingError("horizon and until exclude each other: windows end at the horizon")
+    return _reachtube.cut(
+        robot._native if isinstance(robot, Robot) else None,
+        robot._native if isinstance(robot, Abstraction) else None,
+        torque,
+        real("horizon", horizon),
+        None if max_gap is None else real("max_gap", max_gap),
+        *native_of_logs(data),  # type: ignore[arg-type]
+    )
 
 
 def told(text: str, notes: list[str], level: int) -> Model:

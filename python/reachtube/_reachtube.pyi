@@ -20,6 +20,7 @@ __all__ = [
     "check_findings",
     "check_model",
     "conform",
+    "cut",
     "excite",
     "flowpipe",
     "identify",
@@ -175,6 +176,7 @@ def conform(
     fit: list[str],
     pull: float | None = None,
     resume: str | None = None,
+    preparation: str | None = None,
     progress: _Progress = None,
 ) -> tuple[str, list[str]]: ...
 def check_model(text: str, origin: str) -> None: ...
@@ -214,6 +216,15 @@ def model(
     given: str,
     progress: _Progress = None,
 ) -> tuple[str, list[str]]: ...
+def cut(
+    robot: Robot | None,
+    abstraction: Abstraction | None,
+    torque: str,
+    horizon: float,
+    max_gap: float | None,
+    paths: list[str],
+    runs: Source | None,
+) -> tuple[Source, str, list[str]]: ...
 def prepared(model: str, paths: list[str], runs: Source | None) -> Source: ...
 def prepare(
     robot: Robot,

@@ -82,9 +82,11 @@ pub(crate) fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
 }
 
 /// Finds the smallest sets, and returns the model file's text and notes about the recordings.
+/// `preparation` is what was done to logs before, as JSON.
 #[pyfunction]
 #[pyo3(signature = (
-    robot, abstraction, source, suites, settings, fit, pull=None, resume=None, progress=None
+    robot, abstraction, source, suites, settings, fit, pull=None, resume=None, preparation=None,
+    progress=None
 ))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn conform(
@@ -97,6 +99,7 @@ pub(crate) fn conform(
     fit: Vec<String>,
     pull: Option<f64>,
     resume: Option<PathBuf>,
+    preparation: Option<String>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<(String, Vec<String>)> {
     let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
@@ -112,7 +115,12 @@ pub(crate) fn conform(
         if let Some(tolerance) = explain {
             job = job.explain(tolerance);
         }
-        Ok(told(&job.run(watch)?))
+        let mut answer = job.run(watch)?;
+        if let Some(preparation) = &preparation {
+            let preparation = serde_json::from_str(preparation).map_err(Failure::setting)?;
+            answer.model = answer.model.with_preparation(preparation);
+        }
+        Ok(told(&answer))
     })
 }
 

@@ -43,7 +43,7 @@ mod _reachtube {
     #[pymodule_export]
     use crate::logs::read_log;
     #[pymodule_export]
-    use crate::model::{model, prepared};
+    use crate::model::{cut, model, prepared};
     #[pymodule_export]
     use crate::points::{NativeFleetProblem, NativePartPoints};
     #[pymodule_export]

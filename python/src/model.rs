@@ -7,10 +7,12 @@ use pyo3::prelude::*;
 use reachtube::conform::Model;
 use reachtube::conform::result::FrontEnd;
 use reachtube::page::{Assets, built_pages, page_files};
-use reachtube::pipeline::{Built, Choice, Choices, build};
+use reachtube::pipeline::{Built, Choice, Choices, Cut, build};
 use reachtube::{Progress, Robot};
 use serde_json::{Map, Value, json};
 
+use crate::abstraction::NativeAbstraction;
+use crate::conformance::basis;
 use crate::failure::{Failure, Result};
 use crate::findings::list;
 use crate::logs_on_disk::LogsOnDisk;
@@ -79,7 +81,7 @@ fn made(robot: &Robot, choices: &Choices, watch: &dyn Progress) -> Result<Built>
     let mut say = |choice: &Choice| {
         watch.finished(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
     };
-    Ok(build(robot, torque, choices, &mut say, watch)?)
+    Ok(build(robot, torque, choices, None, &mut say, watch)?)
 }
 
 /// Returns what Python keeps of a model: the answer, its summary, and the files that `save` writes.
@@ -90,7 +92,7 @@ fn kept(built: &Built) -> Result<String> {
         serde_json::from_str(&list(&built.all_findings())).map_err(Failure::setting)?;
     let mut files: Vec<(String, String)> =
         built.files().map(|(name, text)| (name.to_string(), text)).into();
-    for (folder, page) in built_pages(built, front_end)? {
+    for (folder, page) in built_pages(built)? {
         for file in page_files(&page, Assets::Inside)? {
             let content = String::from_utf8_lossy(&file.content).into_owned();
             files.push((format!("{folder}/{}", file.path.display()), content));
@@ -122,4 +124,35 @@ pub(crate) fn prepared(
         windows.map_err(|error| logs.named(error))
     })?;
     Ok(NativeSource::in_memory(windows))
+}
+
+/// Cuts logs into windows for a conformance. Returns them, what was done to the logs as JSON, and
+/// notes.
+#[pyfunction]
+#[pyo3(signature = (robot, abstraction, torque, horizon, max_gap, paths, runs))]
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn cut(
+    py: Python<'_>,
+    robot: Option<PyRef<'_, NativeRobot>>,
+    abstraction: Option<PyRef<'_, NativeAbstraction>>,
+    torque: String,
+    horizon: f64,
+    max_gap: Option<f64>,
+    paths: Vec<PathBuf>,
+    runs: Option<PyRef<'_, NativeSource>>,
+) -> PyResult<(NativeSource, String, Vec<String>)> {
+    let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
+    let runs = runs.map(|runs| runs.source.clone());
+    let (cut, notes) = watched(py, None, move |_| {
+        let torque = serde_json::from_value(json!(torque))
+            .map_err(|error| Failure::Setting(format!("torque: {error}")))?;
+        let logs = LogsOnDisk::new(paths, runs.as_ref())?;
+        let robot = basis.robot()?.into_owned();
+        let cut = Cut::new(&robot, torque, horizon, max_gap, &logs.paths)
+            .map_err(|error| logs.named(error))?;
+        let notes: Vec<String> = cut.notes.iter().map(|note| logs.renamed(note)).collect();
+        Ok((cut, notes))
+    })?;
+    let preparation = json!(cut.preparation).to_string();
+    Ok((NativeSource::in_memory(cut.windows), preparation, notes))
 }

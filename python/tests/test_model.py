@@ -125,6 +125,27 @@ def test_paths_give_the_files_of_the_command(
     assert json.loads(json.dumps(shorter.to_dict()))["horizon"] == 0.05
 
 
+def test_conform_cuts_logs_at_a_horizon(arm: rt.Robot, logs: list[rt.Run]) -> None:
+    model = rt.conform(
+        arm,
+        logs[:2],
+        torque="motor",
+        horizon=0.1,
+        noise="fitted",
+        nominal="own",
+        equations="robot",
+    )
+    assert model.verified
+    own = rt.check(model, logs[:2])
+    assert own and own.violations == 0
+    # Each window is a suite, of both logs.
+    assert len(own.suites) > 20 and own.suites[0]["suite"].startswith("wave_0_w")
+    with pytest.raises(rt.SettingError, match="exclude each other"):
+        rt.conform(arm, logs[:2], torque="motor", horizon=0.1, until=1.0)
+    with pytest.raises(rt.SettingError, match="above 0"):
+        rt.conform(arm, logs[:2], torque="motor", horizon=-1.0)
+
+
 def test_wrong_arguments_are_named(arm: rt.Robot, logs: list[rt.Run], tmp_path: Path) -> None:
     for arguments, words in [
         ({"data": logs}, "torque is not given"),

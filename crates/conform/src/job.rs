@@ -1,5 +1,6 @@
 //! A conformance from recordings to an answer, as every front end asks for it.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use reachtube_abstraction::PolynomialModel;
@@ -77,6 +78,18 @@ impl Basis {
             Self::Robot(robot) => robot.joint_count(),
             Self::Abstraction(model) => model.joints(),
         }
+    }
+
+    /// Returns the robot.
+    ///
+    /// # Errors
+    ///
+    /// A description in the file of an abstraction that is none.
+    pub fn robot(&self) -> Result<Cow<'_, Robot>> {
+        Ok(match self {
+            Self::Robot(robot) => Cow::Borrowed(robot),
+            Self::Abstraction(model) => Cow::Owned(Robot::from_description(model.robot())?),
+        })
     }
 
     /// Makes the setup of a conformance. Explanations are searched for within `explain`; where that

@@ -25,22 +25,25 @@ pub const TO_OWN: &str = "the recordings that the model was made of";
 /// # Errors
 ///
 /// As [`page`](fn@crate::page), and as [`CheckJob::open`](reachtube_conform::CheckJob::open).
-pub fn built_pages(built: &Built, front_end: FrontEnd) -> Result<Vec<(&'static str, Page)>> {
+pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
     let all = built.answer.model.data.run_count();
     let which = format!(", an excerpt of {all} with the ten that decide the sets most");
-    let mut own = excerpt(built, &built.shown, front_end, &which)?;
+    let mut own = excerpt(built, &built.shown, &which)?;
     of_built(built, &mut own.lead);
     own.verdict.words = as_sentence(&built.verdict());
     own.verdict.useful = Some(built.is_useful());
-    let findings = built.findings.iter().map(|finding| finding.written_for(front_end));
+    let findings = built.findings.iter().map(|finding| finding.written_for(FrontEnd::Choices));
     own.verdict.warnings.splice(0..0, findings);
+    let remedies = built.remedies.iter();
+    let remedies = remedies.map(|finding| as_sentence(&finding.written_for(FrontEnd::Choices)));
+    own.verdict.warnings.extend(remedies);
     if built.held_out.failure.is_some() {
         return Ok(vec![("page", own)]);
     }
     let all = built.held_out.windows;
     let which =
         format!(", an excerpt of {all} that were held out, with up to 12 that leave the sets");
-    let mut other = excerpt(built, &built.shown_held_out, front_end, &which)?;
+    let mut other = excerpt(built, &built.shown_held_out, &which)?;
     other.verdict.words = format!("Held out: {}. {}", built.held_out_words(), other.verdict.words);
     own.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
     other.lead.links = vec![(TO_OWN.into(), format!("../page/{PAGE_FILE}"))];
@@ -48,11 +51,12 @@ pub fn built_pages(built: &Built, front_end: FrontEnd) -> Result<Vec<(&'static s
 }
 
 /// Returns a page about some recordings; `which` ends the line under its title.
-fn excerpt(built: &Built, runs: &MemoryRuns, front_end: FrontEnd, which: &str) -> Result<Page> {
+fn excerpt(built: &Built, runs: &MemoryRuns, which: &str) -> Result<Page> {
     let job = built.answer.model.check(runs.clone()).keep(Keep::All);
     let opened = job.open(&Silent)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;
+    let front_end = FrontEnd::Choices;
     let mut page = page(&Sources { model, problem, reach: &reach, check: &check, front_end })?;
     page.subtitle += which;
     Ok(page)

@@ -50,6 +50,7 @@ pub(super) fn lead(sources: &Sources) -> Result<Lead> {
 pub(super) fn of_built(built: &Built, lead: &mut Lead) {
     lead.facts = facts_of_sets(&built.answer.model);
     lead.facts.push(("Held out".into(), built.held_out_words()));
+    lead.facts.push(("New motions".into(), built.held_out.next_motion.clone()));
     if let Some((figure, caption)) = over_horizons(built) {
         (lead.figure, lead.caption) = (Some(figure), caption);
     }
@@ -115,7 +116,7 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     series.push(Series { points: own.clone(), dots: true, colour: MAIN });
     let caption = format!(
         "How wide the sets are beside the motion, by horizon: {name} (blue), whose set is the \
-         widest at {horizon} s (black line), and the other joints (grey). Up to the red line, \
+         widest at {horizon} s (vertical line), and the other joints (grey). Up to the red line, \
          {:.0} %, sets are useful. Other horizons were tried on up to 200 windows. The ratio may \
          be compared across horizons; the cost may not: it adds rad to rad/s and grows with the \
          number of samples, so it is compared only within one data set.",

@@ -43,7 +43,8 @@ const TERMS: [(&str, &str); 20] = [
     ("V", "set of the measurement noise"),
 ];
 
-/// A text from outside, in which the first use of each term has its explanation on hover.
+/// A text from outside, in which the first use of each term has its explanation on hover, and what
+/// is between backticks is code.
 pub(super) struct Explained<'a>(pub(super) &'a str);
 
 impl Render for Explained<'_> {
@@ -51,11 +52,25 @@ impl Render for Explained<'_> {
         let text = clean(self.0);
         let mut from = 0;
         for (start, end, explanation) in found(&text) {
-            text[from..start].render_to(buffer);
+            with_code(&text[from..start], buffer);
             html! { abbr title=(explanation) { (text[start..end]) } }.render_to(buffer);
             from = end;
         }
-        text[from..].render_to(buffer);
+        with_code(&text[from..], buffer);
+    }
+}
+
+/// Renders a text, and what is between two backticks in it as code.
+fn with_code(text: &str, buffer: &mut String) {
+    let parts: Vec<&str> = text.split('`').collect();
+    if parts.len() % 2 == 0 {
+        return text.render_to(buffer);
+    }
+    for (number, part) in parts.into_iter().enumerate() {
+        match number % 2 {
+            0 => part.render_to(buffer),
+            _ => html! { code { (part) } }.render_to(buffer),
+        }
     }
 }
 
@@ -75,7 +90,8 @@ fn found(text: &str) -> Vec<(usize, usize, &'static str)> {
             let plural = usize::from(rest.starts_with('s') && term.len() > 2);
             let is_whole =
                 !within[..start].ends_with(of_word) && !rest[plural..].starts_with(of_word);
-            is_whole.then_some((start, start + term.len() + plural, *explanation))
+            let is_code = text[..start].matches('`').count() % 2 == 1;
+            (is_whole && !is_code).then_some((start, start + term.len() + plural, *explanation))
         };
         within.match_indices(term).find_map(|(start, _)| whole(start))
     };
@@ -111,6 +127,13 @@ mod tests {
         assert_eq!(html.matches("<abbr").count(), 3, "{html}");
         assert!(html.contains(">rows</abbr> &lt;b&gt; lie in the <abbr"), "{html}");
         assert!(html.contains(">U</abbr>"), "{html}");
+    }
+
+    #[test]
+    fn what_is_between_backticks_is_code_without_explanations() {
+        let html = Explained("`conform --horizon <T>` and X0").render().into_string();
+        assert!(html.starts_with("<code>conform --horizon &lt;T&gt;</code> and <abbr"), "{html}");
+        assert_eq!(Explained("one ` alone").render().into_string(), "one ` alone");
     }
 
     #[test]

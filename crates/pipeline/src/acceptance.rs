@@ -9,14 +9,9 @@ impl Built {
     /// recordings.
     #[must_use]
     pub fn is_useful(&self) -> bool {
-        self.is_narrow() && self.growth_not_accepted().is_none() && self.contradiction().is_none()
-    }
-
-    /// Returns whether the sets were proved, limit every joint, and are narrow enough.
-    fn is_narrow(&self) -> bool {
-        let model = &self.answer.model;
-        let worst = model.usefulness.as_ref().and_then(|said| said.worst());
-        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= self.largest_ratio())
+        self.choices.accept(&self.answer.model)
+            && self.growth_not_accepted().is_none()
+            && self.contradiction().is_none()
     }
 
     /// Returns half a joint's set by the joint's displacement that is accepted at most.
@@ -42,7 +37,7 @@ impl Built {
 
     /// Returns why a model that was proved and is not vacuous is of no use, in a few words.
     pub(crate) fn why_useless(&self) -> String {
-        match self.growth_not_accepted().filter(|_| self.is_narrow()) {
+        match self.growth_not_accepted().filter(|_| self.choices.accept(&self.answer.model)) {
             None => "too wide to be of use".into(),
             Some((joint, factor)) => {
                 let name = &self.answer.model.robot.joints[joint].name;

@@ -1,4 +1,5 @@
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use reachtube_conform::settings::{Equations, NominalStart};
 use reachtube_conform::{Answer, Finding, FitSettings, Progress};
@@ -9,12 +10,16 @@ use reachtube_robot::Robot;
 use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_RATIO};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
+use crate::cut::rounded;
 use crate::error::{Error, Result};
 use crate::findings::unless_accepted;
 use crate::held_out::Split;
 use crate::horizon::{HorizonWidths, longest, try_horizons};
+use crate::journal::{Journal, digest};
+use crate::mean_position::mean_position;
 use crate::motors::unknown_motors;
 use crate::noise::noise;
+use crate::remedies::TooWide;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::Sorted;
 use crate::trial::Trial;
@@ -40,6 +45,8 @@ pub struct Built {
     pub horizons: Vec<HorizonWidths>,
     /// What the motions that were held out say.
     pub held_out: HeldOut,
+    /// What choices that were not applied would give, if the model is too wide to be of use.
+    pub remedies: Vec<Finding>,
     /// Some windows for a page: windows that decide the sets, and others evenly spread.
     pub shown: MemoryRuns,
     /// Some windows of motions that were held out: windows that leave the sets, and others.
@@ -47,7 +54,9 @@ pub struct Built {
 }
 
 /// Makes a model of the recordings that `given` names, and compares it with motions that are held
-/// out. `say` takes each choice when it is made; `progress` may cancel the job.
+/// out. `say` takes each choice when it is made; `progress` may cancel the job. Steps that are
+/// finished are kept in the file `journal`, if one is given, from which the same job continues; who
+/// gives it removes it in the end.
 ///
 /// # Errors
 ///
@@ -58,16 +67,19 @@ pub fn build(
     robot: &Robot,
     torque: Torque,
     given: &Choices,
+    journal: Option<&Path>,
     say: &mut dyn FnMut(&Choice),
     progress: &dyn Progress,
 ) -> Result<Built> {
     let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
     let settings = PrepareSettings { torque: Some(torque), ..given.prepare_settings() };
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
+    let journal = Journal::open(journal, digest(robot, torque, given, &sorted.digest));
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     chooser.choose_held_out(&split);
     let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &*recording.log).collect();
-    let (mut trial, cut_off) = first_choices(&mut chooser, robot, torque, &raw, &settings)?;
+    let choices = first_choices(&mut chooser, &journal, robot, torque, &raw, &settings);
+    let (first, cut_off) = choices?;
 
     // The robot.
     let evidence = Evidence {
@@ -77,49 +89,84 @@ pub fn build(
         torque,
         settings: &settings,
         cut_off,
-        trial: &trial,
+        trial: &first,
     };
     let chosen = evidence.choose(robot, given.identify)?;
-    let Nominal { robot, logs, is_identified, reason, findings, .. } = chosen;
-    let mut findings = unless_accepted(findings, given);
-    chooser.choose("identify", is_identified.to_string(), reason);
-    chooser.choices.identify = Some(is_identified);
-    trial.robot = robot.clone();
-    warnings.extend(unknown_motors(&robot, torque));
+    chooser.choose("identify", chosen.is_identified.to_string(), &chosen.reason);
+    chooser.choices.identify = Some(chosen.is_identified);
+    let job = Decided { robot, given, split: &split, evidence: &evidence };
+    job.finish(chooser, chosen, (sorted.notes, sorted.findings), sorted.simulated)
+}
 
-    // The horizon and the sets.
-    let motions = motion_names(&split);
-    let (from_start, simulated) = (torque == Torque::Compensated, sorted.simulated);
-    let recordings = Prepared { logs: &logs, motions: &motions, from_start, simulated };
-    let found = sets(&mut chooser, &mut trial, &recordings);
-    let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
-    let raw: Vec<RawLog> =
-        split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
-    let held_back = prepare_for(&raw, &robot, torque, &settings, cut_off)?;
-    let held_back = Prepared { logs: &held_back, ..recordings };
-    let horizon = chooser.choices.horizon.unwrap_or_default();
-    answer.model = answer.model.with_preparation(preparation(&chooser.choices, torque));
-    let compared = Compared::new(&answer, &recordings, &held_back, horizon)?;
-    let Compared { held_out, shown, shown_held_out } = compared;
-    findings.extend(sorted.findings.into_iter().chain(held_out.finding()));
-    Ok(Built {
-        answer,
-        robot,
-        choices: chooser.choices,
-        made: chooser.made,
-        notes: sorted.notes,
-        findings,
-        horizons,
-        held_out,
-        shown,
-        shown_held_out,
-    })
+/// A job whose motions are split and whose robot is chosen.
+struct Decided<'a> {
+    /// The robot as described.
+    robot: &'a Robot,
+    given: &'a Choices,
+    split: &'a Split,
+    evidence: &'a Evidence<'a>,
+}
+
+impl Decided<'_> {
+    /// Chooses the horizon, finds the sets, and compares them with what was held out. `read` are the
+    /// notes and findings of the reading.
+    fn finish(
+        &self,
+        mut chooser: Chooser,
+        chosen: Nominal,
+        read: (Vec<String>, Vec<Finding>),
+        simulated: bool,
+    ) -> Result<Built> {
+        let Self { given, split, .. } = *self;
+        let Evidence { torque, settings, cut_off, trial, .. } = *self.evidence;
+        let Nominal { robot, logs, findings, .. } = chosen;
+        let mut findings = unless_accepted(findings, given);
+        findings.extend(unknown_motors(&robot, torque));
+        let mut trial = Trial { robot: robot.clone(), ..trial.clone() };
+        let (motions, from_start) = (motion_names(split), torque == Torque::Compensated);
+        let recordings = Prepared { logs: &logs, motions: &motions, from_start, simulated };
+        let found = sets(&mut chooser, &mut trial, &recordings);
+        let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
+        let choices = &chooser.choices;
+        answer.model = answer.model.with_preparation(preparation(choices, torque));
+        let wide =
+            TooWide { given, choices, trial: &trial, recordings: &recordings, horizons: &horizons };
+        let remedies = match choices.accept(&answer.model) {
+            true => Vec::new(),
+            false => wide.remedies(self.evidence, self.robot)?,
+        };
+
+        // What was held out.
+        let raw: Vec<RawLog> =
+            split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
+        let held_back = prepare_for(&raw, &robot, torque, settings, cut_off)?;
+        let held_back = Prepared { logs: &held_back, ..recordings };
+        let horizon = choices.horizon.unwrap_or_default();
+        let whole = split.held_out_motions();
+        let compared = Compared::new(&answer, &recordings, &held_back, horizon, whole)?;
+        let Compared { held_out, shown, shown_held_out } = compared;
+        findings.extend(read.1.into_iter().chain(held_out.finding()));
+        Ok(Built {
+            answer,
+            robot,
+            choices: chooser.choices,
+            made: chooser.made,
+            notes: read.0,
+            findings,
+            horizons,
+            held_out,
+            remedies,
+            shown,
+            shown_held_out,
+        })
+    }
 }
 
 /// Chooses the filter, the model of deviations about the mean of the motion, and what the noise of
 /// the sensors is. Returns them with the cut-off, Hz, for `robot` as described.
-fn first_choices<'a>(
-    chooser: &mut Chooser<'a>,
+fn first_choices<'a, 'b: 'a>(
+    chooser: &mut Chooser<'b>,
+    journal: &'a Journal<'a>,
     robot: &Robot,
     torque: Torque,
     raw: &[&RawLog],
@@ -128,7 +175,7 @@ fn first_choices<'a>(
     let given = chooser.choices.clone();
     let is_filtered = torque != Torque::Compensated;
     let cut_off = cut_off(raw, &PrepareSettings { cut_off: given.cut_off, ..settings.clone() })?;
-    let cut_off = (10.0 * cut_off).round() / 10.0;
+    let cut_off = rounded(cut_off);
     if is_filtered {
         chooser.choose(
             "cut-off",
@@ -154,8 +201,9 @@ fn first_choices<'a>(
     let equations = given.equations.unwrap_or(Equations::Robot);
     let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
     let robot = robot.clone();
-    let progress = chooser.progress;
-    let trial = Trial { robot, expansion, sensor_noise, equations, nominal, fit: None, progress };
+    let (fit, progress) = (None, chooser.progress);
+    let trial =
+        Trial { robot, expansion, sensor_noise, equations, nominal, fit, progress, journal };
     Ok((trial, cut_off))
 }
 
@@ -211,12 +259,24 @@ fn longest_of_all(
 ) -> Result<(Answer, f64)> {
     let mut horizon = longest(tried, largest).horizon;
     loop {
-        let answer = trial.run(recordings.cut(horizon, usize::MAX)?)?;
-        let is_narrow = worst(&answer).1 <= largest;
+        let run = || trial.run(recordings.cut(horizon, usize::MAX)?);
         let shorter = tried.iter().rev().find(|other| other.horizon < horizon);
-        match shorter.filter(|shorter| !is_narrow && shorter.worst().1 <= largest) {
-            Some(shorter) => horizon = shorter.horizon,
-            None => return Ok((answer, horizon)),
+        let Some(shorter) = shorter.filter(|shorter| shorter.worst().1 <= largest) else {
+            return Ok((run()?, horizon));
+        };
+        // A job that continues does not find sets again that were too wide.
+        let mut found = None;
+        let name = format!("{horizon} s, all windows, {}", trial.name());
+        let is_narrow = trial.journal.step(&name, || {
+            let answer = run()?;
+            let is_narrow = worst(&answer).1 <= largest;
+            found = Some(answer);
+            Ok(is_narrow)
+        })?;
+        match (is_narrow, found) {
+            (true, Some(answer)) => return Ok((answer, horizon)),
+            (true, None) => return Ok((run()?, horizon)),
+            (false, _) => horizon = shorter.horizon,
         }
     }
 }
@@ -322,16 +382,4 @@ pub(crate) fn percent(ratio: f64) -> String {
 
 fn list(values: &[f64]) -> String {
     values.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
-}
-
-/// Returns the mean position of recordings, n, rounded to 0.01.
-fn mean_position(logs: &[&RawLog]) -> Vec<f64> {
-    let n = logs.first().map_or(0, |log| log.run.joints);
-    let samples: usize = logs.iter().map(|log| log.run.len()).sum();
-    let sum = |joint: usize| -> f64 {
-        logs.iter().map(|log| (0..log.run.len()).map(|k| log.run.q(k)[joint]).sum::<f64>()).sum()
-    };
-    let mean = |joint: usize| sum(joint) / samples.max(1) as f64;
-    // Adding 0 turns -0 into 0.
-    (0..n).map(|joint| (100.0 * mean(joint)).round() / 100.0 + 0.0).collect()
 }

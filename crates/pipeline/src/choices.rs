@@ -1,8 +1,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use reachtube_conform::Group;
 use reachtube_conform::settings::Equations;
+use reachtube_conform::{Group, Model};
 use reachtube_identify::prepare::PrepareSettings;
 use reachtube_recordings::{ColumnSettings, LogSettings, Torque};
 use serde::{Deserialize, Serialize};
@@ -147,6 +147,14 @@ impl Choices {
         }
         choices.data.iter_mut().for_each(|path| *path = folder.join(&*path));
         Ok(choices)
+    }
+
+    /// Returns whether the sets of a model were proved, limit every joint, and are narrow enough at
+    /// the horizon.
+    pub(crate) fn accept(&self, model: &Model) -> bool {
+        let worst = model.usefulness.as_ref().and_then(|said| said.worst());
+        let largest = self.largest_ratio.unwrap_or(LARGEST_RATIO);
+        model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= largest)
     }
 
     /// Replaces choices by the ones that `given` has. Reasons are about values, and are dropped

@@ -27,6 +27,13 @@ pub struct HeldOut {
     /// The factor by which the set of each joint would have to grow where it is left furthest, n;
     /// 1 where nothing lies outside.
     pub growth: Vec<f64>,
+    /// Number of motions; `None` where a motion was held out in part only.
+    pub motions: Option<usize>,
+    /// The factor by which the radii of X0 and U would have to grow so that the sets enclose all
+    /// motions that were held out, 1 where they do; `None` where none suffices.
+    pub factor: Option<f64>,
+    /// What follows for the next motion, in a few words.
+    pub next_motion: String,
     /// Why the motions could not be compared, such as a nominal motion that runs away.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
@@ -41,14 +48,16 @@ pub(crate) struct Compared {
 
 impl Compared {
     /// Compares a model with the recordings that were held out, and chooses windows for pages: the
-    /// windows that decide the sets or leave them, and others evenly spread.
+    /// windows that decide the sets or leave them, and others evenly spread. `motions` is the
+    /// number of motions that were held out as a whole.
     pub(crate) fn new(
         answer: &Answer,
         recordings: &Prepared,
         held_back: &Prepared,
         horizon: f64,
+        motions: Option<usize>,
     ) -> Result<Self> {
-        let (held_out, outside) = HeldOut::new(answer, held_back, horizon)?;
+        let (held_out, outside) = HeldOut::new(answer, held_back, horizon, motions)?;
         let deciding = &answer.model.deciding_runs.most;
         let deciding = deciding.iter().map(|run| run.file.clone()).collect();
         let shown = some_windows(recordings, horizon, &deciding)?;
@@ -79,6 +88,7 @@ impl HeldOut {
         answer: &Answer,
         recordings: &Prepared,
         horizon: f64,
+        motions: Option<usize>,
     ) -> Result<(Self, BTreeSet<String>)> {
         let n = answer.model.robot.joints.len();
         let none = BTreeSet::new();
@@ -99,6 +109,9 @@ impl HeldOut {
                     rows: verdict.rows,
                     outside: verdict.violations.count,
                     growth: growth(&check, n),
+                    motions,
+                    factor: check.factor_of_sets(),
+                    next_motion: check.next_motion_in_brief(motions),
                     failure: None,
                 };
                 Ok((held_out, outside))
@@ -108,8 +121,16 @@ impl HeldOut {
     }
 
     fn failed(joints: usize, windows: usize, why: &str) -> Self {
-        let growth = vec![f64::INFINITY; joints];
-        Self { windows, rows: 0, outside: 0, growth, failure: Some(why.into()) }
+        Self {
+            windows,
+            rows: 0,
+            outside: 0,
+            growth: vec![f64::INFINITY; joints],
+            motions: None,
+            factor: None,
+            next_motion: "no guarantee: what was held out could not be compared".into(),
+            failure: Some(why.into()),
+        }
     }
 }
 

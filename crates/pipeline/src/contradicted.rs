@@ -6,10 +6,11 @@ use reachtube_conform::result::Severity;
 use crate::build::Built;
 
 impl Built {
-    /// Returns all findings: the ones about the recordings first, then the findings of the model.
+    /// Returns all findings: the ones about the recordings first, then the findings of the model
+    /// and what would help.
     #[must_use]
     pub fn all_findings(&self) -> Vec<Finding> {
-        self.findings.iter().cloned().chain(self.answer.findings()).collect()
+        [self.findings.clone(), self.answer.findings(), self.remedies.clone()].concat()
     }
 
     /// Returns the contradiction for which the model is not acceptable, if there is one.

@@ -21,6 +21,8 @@ impl Built {
                 "windows": self.held_out.windows,
                 "rows": self.held_out.rows,
                 "outside": self.held_out.outside,
+                "motions": self.held_out.motions,
+                "factor": self.held_out.factor,
                 "failure": self.held_out.failure,
             },
             "horizons": self.horizons.iter().map(|widths| json!({

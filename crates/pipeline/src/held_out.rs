@@ -1,5 +1,6 @@
 //! Which motions are held out, before anything is looked at.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use reachtube_identify::prepare::{LogEntry, RawLog};
@@ -78,6 +79,15 @@ impl Split {
             return Err(Error::NothingLeft);
         }
         Ok(Self { kept, held_out, names, reason })
+    }
+
+    /// Returns the number of motions that are held out; `None` where a motion is held out in part.
+    pub(crate) fn held_out_motions(&self) -> Option<usize> {
+        let motions = |recordings: &[Recording]| -> BTreeSet<String> {
+            recordings.iter().map(|recording| recording.motion.clone()).collect()
+        };
+        let [kept, held_out] = [&self.kept, &self.held_out].map(|recordings| motions(recordings));
+        kept.is_disjoint(&held_out).then_some(held_out.len())
     }
 
     /// Holds out the end of each recording of a single motion.
@@ -179,6 +189,7 @@ mod tests {
     fn every_fourth_motion_is_held_out() {
         let split =
             Split::new(recordings(&["a", "a", "b", "c", "d", "e", "f", "g", "h"]), None).unwrap();
+        assert_eq!(split.held_out_motions(), Some(2));
         assert_eq!((split.names, split.kept.len()), (vec!["d".into(), "h".into()], 7));
         let split = Split::new(recordings(&["a", "b"]), None).unwrap();
         assert_eq!(split.names, ["b"]);
@@ -197,6 +208,7 @@ mod tests {
         }
         let split = Split::new(all.clone(), None).unwrap();
         assert_eq!((&split.names[..], split.kept.len()), (&["a3".into(), "b7".into()][..], 6));
+        assert_eq!(split.held_out_motions(), None);
         let again = Split::new(all, Some(&split.names)).unwrap();
         assert_eq!(again.held_out.len(), 2);
     }
@@ -204,6 +216,7 @@ mod tests {
     #[test]
     fn the_end_of_a_single_motion_is_held_out() {
         let split = Split::new(recordings(&["a"]), None).unwrap();
+        assert_eq!(split.held_out_motions(), None);
         let (kept, held_out) = (&split.kept[0].log.run, &split.held_out[0].log.run);
         assert_eq!((kept.len(), held_out.len()), (76, 26));
         assert_eq!((held_out.start, held_out.times[0], held_out.q(0)[0]), (7.5, 0.0, 7.5));

@@ -9,7 +9,7 @@ use crate::windows::Prepared;
 const HORIZONS: [f64; 11] = [0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0];
 
 /// Windows of a trial: more hardly change how wide sets are beside the motion.
-const MOST_WINDOWS: usize = 200;
+pub(crate) const MOST_WINDOWS: usize = 200;
 
 /// Longer horizons are not tried once the worst joint's set is wider than its motion by this
 /// factor.
@@ -51,16 +51,10 @@ pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<H
     let whole = recordings.from_start.then(|| recordings.longest());
     let shorter = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
     for horizon in shorter.chain(whole).filter(|horizon| *horizon >= shortest) {
-        let windows = match recordings.cut(horizon, MOST_WINDOWS) {
-            Err(Error::NoWindow { .. }) => break,
-            other => other?,
-        };
-        let (ratios, reason) = match trial.run(windows) {
-            Ok(answer) => (ratios(&answer.found.usefulness.joints), None),
-            Err(error) if trial.progress.is_cancelled() => return Err(error),
-            Err(error) => (Vec::new(), Some(error.to_string())),
-        };
-        tried.push(HorizonWidths { horizon, ratios, reason });
+        match try_horizon(trial, recordings, horizon, MOST_WINDOWS)? {
+            Some(widths) => tried.push(widths),
+            None => break,
+        }
         let is_too_wide = tried.last().is_some_and(|widths| widths.worst().1 > TOO_WIDE);
         if is_too_wide && whole.is_none() {
             break;
@@ -75,8 +69,31 @@ pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<H
     }
 }
 
-fn ratios(joints: &[JointWidth]) -> Vec<f64> {
-    joints.iter().map(JointWidth::ratio).collect()
+/// Finds how wide the sets are at a horizon, over at most `most` windows; `None` if no recording is
+/// as long.
+pub(crate) fn try_horizon(
+    trial: &Trial,
+    recordings: &Prepared,
+    horizon: f64,
+    most: usize,
+) -> Result<Option<HorizonWidths>> {
+    let windows = match recordings.cut(horizon, most) {
+        Err(Error::NoWindow { .. }) => return Ok(None),
+        other => other?,
+    };
+    let name = format!("{horizon} s, {most} windows, {}", trial.name());
+    // JSON has no infinite ratio, as where a set was lost.
+    let (ratios, reason) = trial.journal.step(&name, || match trial.run(windows) {
+        Ok(answer) => Ok((ratios(&answer.found.usefulness.joints), None)),
+        Err(error) if trial.progress.is_cancelled() => Err(error),
+        Err(error) => Ok((Vec::new(), Some(error.to_string()))),
+    })?;
+    let ratios = ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect();
+    Ok(Some(HorizonWidths { horizon, ratios, reason }))
+}
+
+fn ratios(joints: &[JointWidth]) -> Vec<Option<f64>> {
+    joints.iter().map(|joint| Some(joint.ratio()).filter(|ratio| ratio.is_finite())).collect()
 }
 
 /// Returns the longest horizon at which no set is wider beside the motion than `largest`; if there

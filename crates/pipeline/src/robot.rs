@@ -152,7 +152,7 @@ impl Evidence<'_> {
     }
 
     /// Identifies the robot from what is not held out.
-    fn identified(&self, described: &Robot) -> Result<Nominal> {
+    pub(crate) fn identified(&self, described: &Robot) -> Result<Nominal> {
         let settings = IdentifySettings {
             rest: self.rest.clone(),
             friction: self.one_joint.clone(),
@@ -166,11 +166,14 @@ impl Evidence<'_> {
             },
             ..IdentifySettings::default()
         };
-        let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
-        let nominal = self.prepared(&Robot::from_description(&found.description)?)?;
-        let findings = found.implausible.iter().map(implausible).collect();
+        let (description, implausible_results) = self.trial.journal.step("identify", || {
+            let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
+            Ok((found.description, found.implausible))
+        })?;
+        let nominal = self.prepared(&Robot::from_description(&description)?)?;
+        let findings = implausible_results.iter().map(implausible).collect();
         let swapped = |result: &Implausible| result.columns == Some(WrongColumns::Swapped);
-        let is_swapped = found.implausible.iter().any(swapped);
+        let is_swapped = implausible_results.iter().any(swapped);
         Ok(Nominal { is_identified: true, findings, is_swapped, ..nominal })
     }
 
@@ -187,13 +190,26 @@ impl Evidence<'_> {
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of
     /// the root mean square of what is left by the root mean square of the torque.
     fn unexplained(&self, nominal: &Nominal) -> Result<f64> {
+        let of = if nominal.is_identified { "identified robot" } else { "description" };
+        let part = self.trial.journal.step(&format!("torque, {of}"), || {
+            let part = self.unexplained_part(nominal)?;
+            Ok(part.is_finite().then_some(part))
+        })?;
+        Ok(part.unwrap_or(f64::INFINITY))
+    }
+
+    fn unexplained_part(&self, nominal: &Nominal) -> Result<f64> {
         let none = BTreeMap::new();
         let recordings =
             Prepared { logs: &nominal.logs, motions: &none, from_start: false, simulated: false };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
-        // A model that runs away explains nothing.
-        let Ok(answer) = trial.run(windows) else { return Ok(f64::INFINITY) };
+        let answer = match trial.run(windows) {
+            Ok(answer) => answer,
+            Err(error) if trial.progress.is_cancelled() => return Err(error),
+            // A model that runs away explains nothing.
+            Err(_) => return Ok(f64::INFINITY),
+        };
         let errors = answer.found.input_error;
         let gains = &self.settings.gains;
         let torque = |joint: usize| {

@@ -15,6 +15,7 @@ use crate::chooser::Chooser;
 use crate::error::{Error, Result};
 use crate::findings::warning;
 use crate::held_out::Recording;
+use crate::journal::data_digest;
 use crate::kinds::{Kind, motions};
 
 /// Recordings by what they are.
@@ -28,6 +29,8 @@ pub(crate) struct Sorted {
     pub findings: Vec<Finding>,
     /// Whether a recording is marked as simulated.
     pub simulated: bool,
+    /// The digest of all recordings.
+    pub digest: String,
 }
 
 impl Sorted {
@@ -61,6 +64,7 @@ impl Sorted {
         let known: Vec<Option<String>> = moving.iter().map(|log| named(log, &known)).collect();
         let shown: Vec<&RawLog> = moving.iter().map(|log| &***log).collect();
         let names = motions(&shown, &known);
+        let digest = data_digest(&raw, &names);
         let distinct = names.iter().collect::<BTreeSet<_>>().len();
         chooser.choose(
             "data",
@@ -83,7 +87,7 @@ impl Sorted {
             raw.iter().flat_map(|log| log.moved.iter().map(|text| warning(Code::TurnsMoved, text)));
         let findings = findings.collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        Ok(Self { rest, one_joint, motions, notes, findings, simulated })
+        Ok(Self { rest, one_joint, motions, notes, findings, simulated, digest })
     }
 }
 

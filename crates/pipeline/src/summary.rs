@@ -5,6 +5,9 @@ use reachtube_conform::result::{Code, FrontEnd, Summary};
 
 use crate::build::Built;
 
+/// The name of what follows for new motions.
+const NEW_MOTIONS: &str = "new motions";
+
 /// Number of horizons beyond the chosen one whose sets are listed.
 const BEYOND: usize = 2;
 
@@ -44,7 +47,7 @@ impl Built {
         if !self.is_useful() {
             let findings = self.answer.model.findings().into_iter();
             let causes = findings.filter(|finding| finding.code == Code::Cause);
-            summary.verdict.extend(causes.map(|finding| finding.written_for(front_end)));
+            summary.verdict.extend(causes.map(|finding| finding.written_for(FrontEnd::Choices)));
         }
         summary.table = self.answer.table_at_horizon(&self.held_out.growth);
         let is_said = |other: &&Finding| {
@@ -52,7 +55,12 @@ impl Built {
         };
         let warnings = self.findings.iter().filter(|other| !is_said(other));
         summary.warnings = warnings.map(|finding| finding.written_for(front_end)).collect();
+        summary.facts.retain(|(name, _)| name != NEW_MOTIONS);
         summary.facts.insert(0, ("held out".into(), self.held_out_words()));
+        summary.fact(NEW_MOTIONS, &self.held_out.next_motion);
+        for finding in &self.remedies {
+            summary.fact("would help", finding.written_for(FrontEnd::Choices));
+        }
         summary.fact("widest set by horizon, of the motion", self.growth());
         summary.next = None;
         summary

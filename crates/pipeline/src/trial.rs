@@ -3,10 +3,13 @@
 use reachtube_abstraction::ExpansionPoint;
 use reachtube_conform::settings::{Equations, NominalStart};
 use reachtube_conform::{Answer, FitSettings, Job, Noise, Progress, Settings};
+use reachtube_files::hex;
 use reachtube_recordings::{MemoryRuns, Torque};
 use reachtube_robot::Robot;
+use sha2::{Digest, Sha256};
 
 use crate::error::Result;
+use crate::journal::Journal;
 
 /// What a conformance over windows needs besides the windows.
 #[derive(Clone)]
@@ -25,6 +28,8 @@ pub(crate) struct Trial<'a> {
     pub fit: Option<FitSettings>,
     /// Who may cancel the job.
     pub progress: &'a dyn Progress,
+    /// The steps that are finished.
+    pub journal: &'a Journal<'a>,
 }
 
 /// An observer of a job of many trials, who cancels each of them and counts none.
@@ -37,6 +42,14 @@ impl Progress for OnlyCancels<'_> {
 }
 
 impl Trial<'_> {
+    /// Returns what differs between the trials of a job, in words.
+    pub(crate) fn name(&self) -> String {
+        let Self { robot, equations, expansion, fit, .. } = self;
+        let robot = serde_json::to_string(robot.description());
+        let robot = hex(&Sha256::digest(robot.expect("the keys of a description are strings")));
+        format!("{equations:?} about {expansion:?}, {fit:?}, robot {robot}")
+    }
+
     /// Finds the sets for windows.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! `reachtube model`: from logs to a model, a page and a verdict.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::Silent;
@@ -20,12 +20,17 @@ use crate::outcome::Outcome;
 use crate::progress::Progress;
 use crate::{output, report_files};
 
+/// The file in the folder that keeps the steps that are finished.
+const JOURNAL: &str = "progress.json";
+
 const HELP: &str = "\
 Examples:
   reachtube model --robot arm.urdf --data logs --torque motor --out arm
       every choice is made from the logs, printed, and written to arm/choices.toml
   reachtube model --settings arm/choices.toml --out again
       the same choices give the same model
+
+If the command is killed, it continues where it was when it is run again with the same options.
 
 Exit codes: 0 conformant and useful, 1 not proved conformant, 2 error, 3 conformant but too wide to
 be of use.";
@@ -84,20 +89,22 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let mut say = |choice: &Choice| {
         output::note(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
     };
-    let built = build(&robot, torque, &choices, &mut say, &Silent)?;
+    let journal = args.out.join(JOURNAL);
+    let built = build(&robot, torque, &choices, Some(&journal), &mut say, &Silent);
     drop(bar);
+    let built = built.inspect_err(|_| forget(&journal))?;
     output::notes(&built.notes);
-    let front_end = FrontEnd::CommandLine;
     let mut written = Vec::new();
     for (name, text) in built.files() {
         let path = args.out.join(name);
         write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
         written.push(path);
     }
-    for (folder, page) in built_pages(&built, front_end)? {
+    for (folder, page) in built_pages(&built)? {
         let folder = args.out.join(folder);
         written.push(report_files::write_page(&page, Assets::Inside, &folder)?);
     }
+    forget(&journal);
     let outcome = outcome(&built);
     if json {
         written.iter().for_each(|path| output::wrote(path));
@@ -110,6 +117,12 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print_verdict(&text, &outcome)?;
     }
     Ok(outcome)
+}
+
+/// Removes the journal: the job is done, or refused.
+fn forget(journal: &Path) {
+    // A journal that stays is replaced by the next job.
+    let _ = std::fs::remove_file(journal);
 }
 
 /// Returns the choices of the settings file and the command line, with paths from the working

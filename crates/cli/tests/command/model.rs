@@ -45,6 +45,7 @@ fn logs_become_a_useful_model_that_takes_other_logs() {
     for file in ["model.json", "robot.toml", "choices.toml", "page/report.html"] {
         assert!(lab.path("arm").join(file).is_file(), "{file}");
     }
+    assert!(!lab.path("arm/progress.json").exists(), "the job is done");
     let page = lab.read("arm/page/report.html");
     for part in [
         ">Conformant and useful",
@@ -166,6 +167,38 @@ fn columns_whose_names_do_not_tell_are_choices() {
     lab.run("check --model arm/model.json --data logs/a.csv").exits(0);
     lab.run("model --settings arm/choices.toml --out again").exits(0);
     assert_eq!(lab.read("arm/model.json"), lab.read("again/model.json"));
+}
+
+#[test]
+fn a_horizon_cuts_logs_for_conform_and_for_what_follows() {
+    let lab = lab();
+    // The pendulum of the logs.
+    let robot = lab.read("pendulum.toml").replace("mass = 1.0", "mass = 2.0");
+    let robot = robot.replace("[0.0, 0.0, -0.3]", "[0.0, 0.0, -0.4]");
+    let robot = robot.replace("0.02, 0.0, 0.0, 0.02", "0.18, 0.0, 0.0, 0.18");
+    let friction = "coulomb = [1, 0, -1, 0, -1, 0, 1, 0], viscous = [0.8, 0, 0]";
+    lab.write("pendulum.toml", format!("{robot}friction = {{ {friction} }}\n"));
+    let run = lab
+        .run(
+            "conform --robot pendulum.toml --data logs --torque motor --horizon 0.2 --noise fitted \
+             --nominal own --equations robot --out model.json --report page",
+        )
+        .exits(0);
+    assert!(run.stderr.contains("cut 3 recordings into "), "{}", run.stderr);
+    let model = json(&lab.read("model.json"));
+    let preparation = &model["preparation"];
+    assert_eq!((&preparation["window"], &preparation["torque"]), (&0.2.into(), &"motor".into()));
+    assert!(preparation["cut_off"].as_f64().unwrap() > 1.0, "{preparation}");
+    assert_eq!(model["settings"]["torque"], "compensated");
+    let check = lab.run("check --model model.json --data logs --torque motor --json").exits(0);
+    let check = json(&check.stdout);
+    assert_eq!((&check["conformant"], &check["rows"]), (&true.into(), &model["proof"]["rows"]));
+    lab.run("report --model model.json --data logs --out again").exits(0);
+    lab.run("export --model model.json --data logs/a.csv --to cora --out cora").exits(0);
+    for wrong in ["--horizon 0", "--horizon 0.2 --until 1", "--horizon 900"] {
+        let data = "--robot pendulum.toml --data logs --torque motor";
+        lab.run(&format!("conform {data} {wrong}")).exits(2);
+    }
 }
 
 #[test]

@@ -68,6 +68,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     if data.motions.len() < 2 {
         return Err(Error::Fit(one_motion(kept.is_some())));
     }
+    let joints = setup.robot.joint_count();
     let speeds: Vec<f64> = (0..joints).map(|j| steering.highest_speed(j)).collect();
     let parameters = Parameters::new(setup, &settings.groups, &speeds);
     if parameters.len() == 0 {

@@ -105,7 +105,7 @@ impl<'a> Parameters<'a> {
             let limit = limit.map_or(BEYOND_FITTED * speed, |limit| limit.max(*speed));
             let own = [viscous.v1, viscous.v2, viscous.v3];
             let fitted = [Quantity::Viscous, Quantity::Cubic].map(|quantity| {
-                let is = |own: &Parameter| own.joint == joint && own.quantity == quantity;
+                let is = |own: &FreeParameter| own.joint == joint && own.quantity == quantity;
                 parameters.list.iter().position(is)
             });
             RisingFriction::new(fitted, own, limit)

@@ -1,6 +1,6 @@
 //! Whether a model says anything, and how logs became its recordings.
 
-use reachtube_recordings::Preparation;
+use reachtube_recordings::{Preparation, Torque};
 
 use crate::model::file::Model;
 
@@ -19,9 +19,14 @@ impl Model {
         self.verified && self.usefulness.as_ref().is_some_and(|said| !said.vacuous.is_empty())
     }
 
-    /// Returns the model with what was done to logs before its sets were found.
+    /// Returns the model with what was done to logs before its sets were found. That is no longer a
+    /// remedy of any warning.
     #[must_use]
-    pub fn with_preparation(self, preparation: Preparation) -> Self {
+    pub fn with_preparation(mut self, preparation: Preparation) -> Self {
+        let has_input = preparation.torque != Torque::Compensated;
+        for warning in self.warnings.iter_mut().filter(|_| has_input) {
+            warning.remedy.take_if(|remedy| remedy.setting == "torque");
+        }
         Self { preparation: Some(preparation), ..self }.sealed()
     }
 }

@@ -42,12 +42,23 @@ pub(crate) enum Cause {
         /// Whether nominal motions can follow the robot's own equations instead.
         can_follow_robot: bool,
     },
+    /// The robot explains the recordings, which are long: a prediction widens with time.
+    Horizon {
+        /// The part that is not explained.
+        unexplained: f64,
+        /// The end of the longest recording, s.
+        longest: f64,
+    },
     /// The recorded motion does not explain the input, however the recordings are read.
     Parameters {
         /// The part that is not explained.
         unexplained: f64,
+        /// Whether the robot was identified from recordings already.
+        is_identified: bool,
         /// Whether the nominal model was fitted for small sets already.
         is_fitted: bool,
+        /// The end of the longest recording, s.
+        longest: f64,
     },
 }
 

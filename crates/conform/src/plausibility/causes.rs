@@ -2,6 +2,7 @@ use std::f64::consts::PI;
 
 use reachtube_abstraction::ModelKind;
 use reachtube_recordings::Torque;
+use reachtube_robot::JointDescription;
 
 use crate::data::problem::Problem;
 use crate::data::settings::{Equations, Method};
@@ -22,6 +23,13 @@ const LARGEST_OF_MEAN: f64 = 0.7;
 
 /// Calibration is named when it scaled the sets by this factor or more.
 const LARGE_FACTOR: f64 = 2.0;
+
+/// A robot that leaves less than this part of the input unexplained is not to blame for sets that
+/// widen over a long time ...
+const LARGEST_OF_GOOD: f64 = 0.25;
+
+/// ... which is longer than this, s.
+const LONG: f64 = 1.0;
 
 /// Lags that are tried, s.
 const LAGS: [f64; 8] = [0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2];
@@ -53,9 +61,22 @@ pub(super) fn likely_cause(
     if scaled.is_some() {
         return Ok(scaled);
     }
-    let is_fitted = problem.setup().correction.is_some();
     let lost = lost_by_model(problem, &evidence, &stated, rest);
-    Ok(lost.or(Some(Cause::Parameters { unexplained: rest, is_fitted })))
+    Ok(lost.or(Some(horizon_or_parameters(problem, evidence.longest(), rest))))
+}
+
+/// Returns the cause where the recordings mean what was stated, and the robot leaves `unexplained`
+/// of the input: recordings as long as `longest`, s, or else parameters. What was applied already
+/// is no remedy.
+fn horizon_or_parameters(problem: &Problem, longest: f64, unexplained: f64) -> Cause {
+    if unexplained < LARGEST_OF_GOOD && longest > LONG {
+        return Cause::Horizon { unexplained, longest };
+    }
+    let description = problem.robot().description();
+    let errors = |joint: &JointDescription| joint.friction.standard_errors.is_some();
+    let is_identified = description.joints.iter().any(errors);
+    let is_fitted = problem.setup().correction.is_some();
+    Cause::Parameters { unexplained, is_identified, is_fitted, longest }
 }
 
 /// Returns which motion that was held out made the sets as large as they are.

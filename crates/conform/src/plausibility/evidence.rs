@@ -83,6 +83,11 @@ impl<'a> Evidence<'a> {
         Ok(Self { robot, runs, needed })
     }
 
+    /// Returns the duration of the longest run, s.
+    pub(super) fn longest(&self) -> f64 {
+        self.runs.iter().map(Run::duration).fold(0.0, f64::max)
+    }
+
     /// Returns the mean of the recorded positions, n, and their largest distance from `origin` in
     /// any joint.
     pub(super) fn positions(&self, origin: &[f64]) -> (Vec<f64>, f64) {

@@ -89,6 +89,8 @@ codes! {
     FallingFriction = "falling-friction",
     /// The most likely cause of other warnings.
     Cause = "cause",
+    /// What a choice that was not applied would give.
+    WouldHelp = "would-help",
     /// The fitted model needs larger sets for motions that it was not fitted to.
     Overfitted = "overfitted",
     /// What the fit of the nominal model changed.
@@ -131,6 +133,8 @@ codes! {
     Contradiction = "contradiction",
     /// Positions that were whole turns away from other recordings were moved.
     TurnsMoved = "turns-moved",
+    /// The torques were measured behind the gears, and the inertia of motors is unknown.
+    MotorsUnknown = "motors-unknown",
 }
 
 #[cfg(test)]

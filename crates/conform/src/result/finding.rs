@@ -85,10 +85,11 @@ impl Finding {
         Self { remedy: remedy.into(), ..self }
     }
 
-    /// Returns sentence and remedy as users of a front end write settings.
+    /// Returns sentence and remedy as users of a front end write settings. A setting that a file of
+    /// choices does not have is left out there.
     #[must_use]
     pub fn written_for(&self, front_end: FrontEnd) -> String {
-        match &self.remedy {
+        match self.remedy.as_ref().filter(|remedy| front_end.has(&remedy.setting)) {
             Some(remedy) => format!("{} {}", self.text, remedy.written_for(front_end)),
             None => self.text.clone(),
         }

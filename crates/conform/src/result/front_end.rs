@@ -7,6 +7,8 @@ pub enum FrontEnd {
     CommandLine,
     /// Users of the Python package write `until=1.204`.
     Python,
+    /// Users of a file of choices write `until = 1.204`.
+    Choices,
 }
 
 /// A setting with a value.
@@ -34,7 +36,16 @@ impl Setting {
     }
 }
 
+/// Remedies that a file of choices can name.
+const CHOICES: [&str; 7] =
+    ["equations", "expansion", "fit", "horizon", "identify", "pull", "torque"];
+
 impl FrontEnd {
+    /// Returns whether users of the front end can give a setting.
+    pub(crate) fn has(self, setting: &str) -> bool {
+        self != Self::Choices || CHOICES.contains(&setting)
+    }
+
     /// Returns a setting with its value, as users of the front end write it.
     #[must_use]
     pub(crate) fn setting(self, name: &str, value: Option<&str>) -> String {
@@ -45,6 +56,9 @@ impl FrontEnd {
                 format!("--{name}={value}")
             }
             (Self::CommandLine, Some(value)) => format!("--{name} {value}"),
+            (Self::Choices, None) => name.into(),
+            (Self::Choices, Some("true")) => format!("{name} = true"),
+            (Self::Choices, Some(value)) => format!("{name} = {}", python_value(name, value)),
             (Self::Python, None) => name.replace('-', "_"),
             (Self::Python, Some(value)) => {
                 format!("{}={}", name.replace('-', "_"), python_value(name, value))
@@ -53,7 +67,7 @@ impl FrontEnd {
     }
 }
 
-/// Returns a value as Python has it.
+/// Returns a value as Python and TOML have it.
 fn python_value(name: &str, value: &str) -> String {
     let one = |part: &str| match part {
         ".." => "...".into(),

@@ -24,6 +24,8 @@ const EFFECTS: &[(&str, &str)] = &[
     ("paper-model", "with order 2 follows how the inertia changes."),
     ("equations", "lets the nominal motions follow the robot's own equations."),
     ("fit", "names the parameters to fit."),
+    ("horizon", "cuts recordings into windows of this length, s."),
+    ("identify", "identifies the robot from the recordings."),
     ("pull", "keeps the fitted values closer to the identified ones."),
     ("initial-limit", "limits X0 to the recorded starts."),
     ("disturbance", "lets the disturbance change during the motion."),

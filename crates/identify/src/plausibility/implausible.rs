@@ -1,5 +1,7 @@
+use serde::{Deserialize, Serialize};
+
 /// A result that is implausible.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Implausible {
     /// What is implausible, in a sentence.
     pub text: String,
@@ -9,7 +11,7 @@ pub struct Implausible {
 }
 
 /// What is wrong with columns of recordings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongColumns {
     /// Columns of a joint have the wrong sign.
     Sign,

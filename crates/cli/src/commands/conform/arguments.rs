@@ -9,7 +9,7 @@ use reachtube_reach::Disturbance;
 use crate::data_arguments::DataArguments;
 use crate::lock_arguments::LockArguments;
 use crate::option_values::{
-    Choices, DISTURBANCES, INITIAL_LIMITS, MODELS, NOTIONS, choice, numbered_choice,
+    Choices, DISTURBANCES, INITIAL_LIMITS, MODELS, NOTIONS, choice, numbered_choice, seconds,
 };
 
 const HELP: &str = "\
@@ -28,6 +28,9 @@ Examples:
       all states together lie in the reachable set itself
   reachtube conform --robot lwa4p --paper-model 2 --order 5 --data recordings \\
       --torque compensated --resume search.json
+  reachtube conform --robot arm.toml --data logs --torque motor --horizon 0.3 --noise fitted \\
+      --nominal own --equations robot --out model.json
+      cut logs into windows of 0.3 s; the model does the same to other logs
   reachtube conform --robot arm.toml --data recordings --torque motor --calibrate M7,M8,M9
       find the sets on the other motions, and scale them to hold these three
 
@@ -94,6 +97,14 @@ pub(crate) struct Arguments {
     pub settings: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArguments,
+    /// Cut recordings into windows of this length, above 0 s, each a suite of its own.
+    ///
+    /// Torques of motors or links are filtered first, and the robot's gravity and dry friction are
+    /// taken off them. The data may be logs as they are, one CSV file or a folder; `check`,
+    /// `reach`, `report` and `export` do the same to theirs.
+    #[arg(long, help_heading = "Data", value_name = "SECONDS", value_parser = seconds)]
+    #[arg(allow_negative_numbers = true, conflicts_with = "until")]
+    pub horizon: Option<f64>,
     /// Fit these parameters of the nominal model for the smallest sets, separated by commas
     #[arg(
         long,

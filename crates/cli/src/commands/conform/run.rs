@@ -1,9 +1,10 @@
 use std::path::{Path, PathBuf};
 
 use reachtube::conform::result::{FrontEnd, Summary};
-use reachtube::conform::{Answer, FitSettings, Job};
+use reachtube::conform::{Answer, FitSettings, Job, Settings};
 use reachtube::page::{Assets, Page, Sources, page};
-use reachtube::recordings::DataSet;
+use reachtube::pipeline::Cut;
+use reachtube::recordings::{DataSet, Preparation, Torque};
 use reachtube::write;
 
 use super::arguments::Arguments;
@@ -16,7 +17,7 @@ use crate::progress::Progress;
 use crate::report_files;
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let job = job(args)?;
+    let (job, preparation) = job(args)?;
     for path in args.out.iter().chain(&args.certificate) {
         output::claim(path)?;
     }
@@ -24,8 +25,11 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::claim(&report_files::page_in(folder))?;
     }
     let bar = Progress::new();
-    let answer = job.run(&bar)?;
+    let mut answer = job.run(&bar)?;
     drop(bar);
+    if let Some(preparation) = preparation {
+        answer.model = answer.model.with_preparation(preparation);
+    }
     output::notes(&answer.problem.recordings().notes);
     let mut written: Vec<&Path> = Vec::new();
     if let Some(path) = &args.out {
@@ -73,14 +77,29 @@ fn summary(answer: &Answer, written: &[&Path], args: &Arguments) -> Result<Summa
     Ok(summary)
 }
 
-/// Returns the job that the arguments describe.
-fn job(args: &Arguments) -> Result<Job> {
+/// Returns the job that the arguments describe, and what was done to logs for it.
+fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
     let basis = basis(args)?;
     let settings = settings(args, basis.joints())?;
-    let torque = settings.torque;
     let fit = FitSettings { groups: args.fit.clone(), pull: args.pull };
-    let mut job = Job::new(basis, DataSet::open(&args.data.data)?, torque)
-        .settings(settings)
+    let (job, preparation) = match args.horizon {
+        None => {
+            let torque = settings.torque;
+            let job = Job::new(basis, DataSet::open(&args.data.data)?, torque);
+            (job.settings(settings), None)
+        }
+        Some(horizon) => {
+            let paths = std::slice::from_ref(&args.data.data);
+            let (torque, max_gap) = (settings.torque, args.data.max_gap);
+            let robot = basis.robot()?.into_owned();
+            let cut = Cut::new(&robot, torque, horizon, max_gap, paths)?;
+            output::notes(&cut.notes);
+            let settings = Settings { torque: Torque::Compensated, ..settings };
+            let job = Job::new(basis, cut.windows, settings.torque).settings(settings);
+            (job, Some(cut.preparation))
+        }
+    };
+    let mut job = job
         .suites(&args.data.suites)
         .fit((!args.fit.is_empty()).then_some(fit))
         .certified(args.certificate.is_some())
@@ -89,7 +108,7 @@ fn job(args: &Arguments) -> Result<Job> {
     if let Some(tolerance) = explain(args)? {
         job = job.explain(tolerance);
     }
-    Ok(job)
+    Ok((job, preparation))
 }
 
 /// Returns the page about the recordings that the sets were found for, from what is in memory.

@@ -75,7 +75,7 @@ fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Resul
     let writes_robot = args.out.is_some() || args.urdf.is_some();
     if let Some(problem) = found.inertia.impossible.clone().filter(|_| writes_robot) {
         // No other command would read it.
-        let causes = found.implausible.clone();
+        let causes = found.implausible.iter().map(|result| result.text.clone()).collect();
         return Err(reachtube::identify::Error::ImpossibleRobot { problem, causes }.into());
     }
     if let Some(path) = &args.out {

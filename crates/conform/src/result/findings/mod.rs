@@ -3,6 +3,7 @@
 mod check;
 mod dependence;
 mod fit;
+mod held_out;
 mod limits;
 mod new_motions;
 mod plausibility;
@@ -10,3 +11,4 @@ mod sets;
 mod vacuous;
 mod verdict;
 pub(super) mod words;
+mod would_help;

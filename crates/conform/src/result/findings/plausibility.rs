@@ -9,6 +9,9 @@ use crate::result::findings::words::listed;
 use crate::result::remedy::Remedy;
 use reachtube_scalar::number::plural;
 
+/// The horizon that is proposed for long recordings, s.
+const FIRST_HORIZON: f64 = 0.5;
+
 impl From<&Warning> for Finding {
     /// Makes the finding of a warning, as model files have it.
     fn from(warning: &Warning) -> Self {
@@ -169,27 +172,56 @@ impl From<&Cause> for Warning {
                 });
                 constant_inertia_words(cause)
             }
-            Cause::Parameters { unexplained, is_fitted } => {
-                remedy = (!is_fitted).then(|| Remedy::new("fit", ""));
-                let what_to_do = match is_fitted {
-                    true => {
-                        "The nominal model was fitted for small sets already, so record more \
-                         motions, or cut them into shorter windows (`reachtube prepare --window`)."
-                    }
-                    false => {
-                        "Check the robot's parameters, for example with `reachtube identify`, or \
-                         fit the nominal model for small sets."
-                    }
-                };
+            Cause::Horizon { unexplained, longest } => {
+                remedy = Some(Remedy::new("horizon", format!("{FIRST_HORIZON}")));
                 format!(
-                    "Units, signs, kind of torque, order of joints and lags fit, but {} of the \
-                     recorded input does not follow from the recorded motion. {what_to_do}",
+                    "The robot explains the recorded input but for {}. A prediction from the \
+                     recorded input alone widens with time, and the recordings last up to \
+                     {longest:.1} s. Predict over a shorter time.",
                     percent(*unexplained)
                 )
+            }
+            Cause::Parameters { .. } => {
+                let (words, setting, value) = parameters_words(cause);
+                remedy = Some(Remedy::new(setting, value));
+                words
             }
         };
         Self::about_all(WarningKind::Cause, text, remedy)
     }
+}
+
+/// Returns the sentences about parameters that do not explain the recordings, and the setting that
+/// helps. What was done already is not proposed again.
+fn parameters_words(cause: &Cause) -> (String, &'static str, String) {
+    let Cause::Parameters { unexplained, is_identified, is_fitted, longest } = cause else {
+        return Default::default();
+    };
+    let (what_to_do, setting, value) = match (is_fitted, is_identified) {
+        (true, _) => (
+            "The nominal model was fitted for small sets already, so record more motions, or \
+             predict over a shorter time.",
+            "horizon",
+            half(*longest),
+        ),
+        (false, true) => (
+            "The robot was identified already, so fit the nominal model for small sets.",
+            "fit",
+            String::new(),
+        ),
+        (false, false) => (
+            "Check the robot's parameters, for example with `reachtube identify`, or fit the \
+             nominal model for small sets.",
+            "fit",
+            String::new(),
+        ),
+    };
+    let words = format!(
+        "Units, signs, kind of torque, order of joints and lags fit, but {} of the recorded input \
+         does not follow from the recorded motion. {what_to_do}",
+        percent(*unexplained)
+    );
+    (words, setting, value)
 }
 
 /// Returns the sentences about a model whose inertia is constant.
@@ -245,6 +277,14 @@ fn reading_words(reading: &Reading) -> String {
             format!("the torques of joints {one} and {other} are swapped")
         }
     }
+}
+
+/// Returns about half of a time, s.
+fn half(time: f64) -> String {
+    let half = 0.5 * time;
+    let unit = 10f64.powi(half.max(1e-3).log10().floor() as i32);
+    let text = format!("{:.3}", unit * (half / unit).floor().max(1.0));
+    text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
 /// Returns a position as settings have it.

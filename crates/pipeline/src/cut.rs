@@ -1,0 +1,84 @@
+use std::path::{Path, PathBuf};
+
+use reachtube_identify::prepare::{
+    LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, unfiltered,
+};
+use reachtube_recordings::{
+    ColumnSettings, LogSettings, MemoryRuns, Preparation, RunSource, Torque, any_simulated,
+};
+use reachtube_robot::Robot;
+
+use crate::error::Result;
+use crate::sorted::index_names;
+use crate::windows::Prepared;
+
+/// Logs that were cut into windows, and what was done to them.
+#[derive(Debug, Clone)]
+pub struct Cut {
+    /// The windows, whose torques are the input of the robot's model.
+    pub windows: MemoryRuns,
+    /// What was done to the logs. A model that carries it takes other logs in the same way.
+    pub preparation: Preparation,
+    /// What a user should know about the logs and what was done to them, in sentences.
+    pub notes: Vec<String>,
+}
+
+impl Cut {
+    /// Reads logs and cuts them into windows of `horizon` \[s\]. Before that, torques of motors or
+    /// links are filtered with a cut-off that is chosen from the logs, and the robot's gravity and
+    /// dry friction are taken off them; compensated torques stay as they are. `max_gap` is the
+    /// longest time between two samples, s.
+    ///
+    /// # Errors
+    ///
+    /// A robot that is not physical; logs that cannot be read or prepared;
+    /// [`Error::NoWindow`](crate::Error::NoWindow) if none is as long as a window.
+    pub fn new(
+        robot: &Robot,
+        torque: Torque,
+        horizon: f64,
+        max_gap: Option<f64>,
+        paths: &[PathBuf],
+    ) -> Result<Self> {
+        robot.check_physical()?;
+        let settings =
+            PrepareSettings { max_gap, torque: Some(torque), ..PrepareSettings::default() };
+        let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
+        let raw = read(&entries, Path::new(""), robot, &settings)?;
+        let mut notes: Vec<String> =
+            raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
+        let is_filtered = torque != Torque::Compensated;
+        let cut_off = match is_filtered {
+            true => Some(rounded(cut_off(&raw.iter().collect::<Vec<&RawLog>>(), &settings)?)),
+            false => None,
+        };
+        let logs = match cut_off {
+            Some(cut_off) => {
+                let prepared = prepare(&raw, &settings, cut_off, Some(robot))?;
+                notes.extend(prepared.changes);
+                prepared.logs
+            }
+            None => raw.iter().map(|log| unfiltered(log, &[])).collect::<Result<_, _>>()?,
+        };
+        let motions = index_names(paths, &raw);
+        let simulated = any_simulated(raw.iter().map(|log| &*log.file));
+        let prepared = Prepared { logs: &logs, motions: &motions, from_start: false, simulated };
+        let windows = prepared.cut(horizon, usize::MAX)?;
+        let [count, of] = [windows.runs().len(), raw.len()];
+        notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));
+        let preparation = Preparation {
+            torque,
+            gains: Vec::new(),
+            cut_off,
+            window: Some(horizon),
+            columns: ColumnSettings::default(),
+            log: LogSettings::default(),
+        };
+        Ok(Self { windows, preparation, notes })
+    }
+}
+
+/// Rounds a cut-off to 0.1 Hz, so that it is short in files.
+pub(crate) fn rounded(cut_off: f64) -> f64 {
+    (10.0 * cut_off).round() / 10.0
+}

@@ -1,0 +1,214 @@
+//! The steps of a job that are finished, in a file, so that a job that was killed continues there.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use reachtube_files::{TOOL, hex, write};
+use reachtube_identify::prepare::RawLog;
+use reachtube_recordings::Torque;
+use reachtube_robot::Robot;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::choices::Choices;
+use crate::error::Result;
+
+/// The name of the file's format.
+const FORMAT: &str = "reachtube-model-progress";
+
+/// The finished steps of a job, and the file that keeps them, if there is one.
+pub(crate) struct Journal<'a> {
+    path: Option<&'a Path>,
+    /// SHA-256 of everything that decides the result.
+    job: String,
+    steps: RefCell<BTreeMap<String, Value>>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    format: String,
+    tool: String,
+    job: String,
+    steps: BTreeMap<String, Value>,
+}
+
+impl<'a> Journal<'a> {
+    /// Opens the journal of a job. What the file has of another job, or what is no journal, does
+    /// not count: it is replaced by the first step.
+    pub(crate) fn open(path: Option<&'a Path>, job: String) -> Self {
+        let text = path.and_then(|path| std::fs::read_to_string(path).ok());
+        let file = text.and_then(|text| serde_json::from_str::<File>(&text).ok());
+        let own =
+            file.filter(|file| (&*file.format, &*file.tool, &*file.job) == (FORMAT, TOOL, &job));
+        let steps = RefCell::new(own.map(|file| file.steps).unwrap_or_default());
+        Self { path, job, steps }
+    }
+
+    /// Returns what the step `name` found before, or does it and keeps what it finds. The job and
+    /// the name decide the answer. Numbers that are not finite cannot be kept.
+    ///
+    /// # Errors
+    ///
+    /// Those of the step, which are not kept, and a file that cannot be written.
+    pub(crate) fn step<T: Serialize + DeserializeOwned>(
+        &self,
+        name: &str,
+        run: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
+        let known = self.steps.borrow().get(name).cloned();
+        if let Some(found) = known.and_then(|value| serde_json::from_value(value).ok()) {
+            return Ok(found);
+        }
+        let found = run()?;
+        if let Some(path) = self.path {
+            let value = serde_json::to_value(&found).expect("the keys of a step are strings");
+            self.steps.borrow_mut().insert(name.into(), value);
+            self.save(path)?;
+        }
+        Ok(found)
+    }
+
+    fn save(&self, path: &Path) -> Result<()> {
+        let file = File {
+            format: FORMAT.into(),
+            tool: TOOL.into(),
+            job: self.job.clone(),
+            steps: self.steps.borrow().clone(),
+        };
+        let text = serde_json::to_string(&file).expect("the keys of a journal are strings");
+        Ok(write::atomically(path, |out| out.write_all(text.as_bytes()))?)
+    }
+}
+
+/// Returns the digest of a job: the robot, the choices that are given, and the digest of the
+/// recordings.
+pub(crate) fn digest(robot: &Robot, torque: Torque, given: &Choices, data: &str) -> String {
+    let job = (robot.description(), torque, given, data);
+    let job = serde_json::to_string(&job).expect("the keys of choices are strings");
+    hex(&Sha256::digest(job))
+}
+
+/// Returns the digest of recordings and of the motions that some of them show.
+pub(crate) fn data_digest(raw: &[Arc<RawLog>], motions: &[String]) -> String {
+    let mut sha256 = Sha256::new();
+    sha256.update(motions.join("\n"));
+    for log in raw {
+        sha256.update(log.name.as_bytes());
+        sha256.update(log.file.as_os_str().as_encoded_bytes());
+        for column in [&log.run.times, &log.run.states, &log.run.torques, &log.run.temperatures] {
+            sha256.update(column.len().to_le_bytes());
+            column.iter().for_each(|value| sha256.update(value.to_le_bytes()));
+        }
+    }
+    hex(&sha256.finalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use reachtube_conform::{Progress, Silent};
+
+    use super::*;
+    use crate::build::{Built, build};
+    use crate::error::Error;
+
+    /// Stops a job once its journal has this many steps.
+    struct StopsAt<'a> {
+        journal: &'a Path,
+        steps: usize,
+    }
+
+    impl Progress for StopsAt<'_> {
+        fn is_cancelled(&self) -> bool {
+            let text = std::fs::read_to_string(self.journal).unwrap_or_default();
+            let file = serde_json::from_str::<File>(&text);
+            file.is_ok_and(|file| file.steps.len() >= self.steps)
+        }
+    }
+
+    /// Writes three logs of a pendulum, which has twice the mass of its description, and returns
+    /// the description.
+    fn logs(folder: &Path) -> Robot {
+        for (name, seed) in [("a", 0.1), ("b", 0.4), ("c", 0.7)] {
+            let mut text = String::from("t,q1,qd1,tau1\n");
+            for k in 0..2000 {
+                let t = 0.005 * f64::from(k);
+                let waves = [(0.6, 1.1 + seed, 0.0), (0.3, 2.3, seed), (0.1, 4.1 - seed, 1.0)];
+                let sum = |part: &dyn Fn(f64, f64, f64) -> f64| -> f64 {
+                    waves.iter().map(|(a, w, p)| part(*a, *w, w * t + p)).sum()
+                };
+                let (q, qd) = (sum(&|a, _, at| a * at.sin()), sum(&|a, w, at| a * w * at.cos()));
+                let qdd = sum(&|a, w, at| -a * w * w * at.sin());
+                let tau = 0.5 * qdd + 0.8 * qd + qd.signum() + 2.0 * 9.81 * 0.4 * q.sin();
+                writeln!(text, "{t:.3},{q:.9},{qd:.9},{tau:.9}").unwrap();
+            }
+            std::fs::write(folder.join(format!("{name}.csv")), text).unwrap();
+        }
+        let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
+                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
+                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
+                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
+        Robot::from_toml(robot, "pendulum").unwrap()
+    }
+
+    #[test]
+    fn a_job_that_is_stopped_after_any_step_continues_to_the_same_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let robot = logs(folder.path());
+        let given = Choices { data: vec![folder.path().into()], ..Choices::default() };
+        let run = |journal: Option<&Path>, progress: &dyn Progress| -> Result<Built> {
+            build(&robot, Torque::Motor, &given, journal, &mut |_| (), progress)
+        };
+        let whole = run(None, &Silent).unwrap().files();
+        let path = folder.path().join("progress.json");
+        let steps = |built: &Result<Built>| match built {
+            Err(_) => serde_json::from_slice::<File>(&std::fs::read(&path).unwrap()).unwrap().steps,
+            Ok(_) => BTreeMap::new(),
+        };
+        let mut stops = 0;
+        loop {
+            let built = run(Some(&path), &StopsAt { journal: &path, steps: stops + 1 });
+            let known = steps(&built);
+            match built {
+                Ok(built) => {
+                    assert_eq!(built.files(), whole);
+                    break;
+                }
+                // Each attempt gets one step further.
+                Err(_) => assert!(known.len() > stops, "{:?}", known.keys()),
+            }
+            stops = known.len();
+        }
+        assert!(stops > 8, "{stops} stops");
+    }
+
+    #[test]
+    fn steps_are_done_once_and_belong_to_their_job() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("progress.json");
+        let third = 1.0 / 3.0;
+        let first = Journal::open(Some(&path), "a".into());
+        assert_eq!(first.step("one", || Ok(vec![Some(third), None])).unwrap()[0], Some(third));
+        assert!(first.step::<f64>("two", || Err(Error::NothingLeft)).is_err());
+        let again = Journal::open(Some(&path), "a".into());
+        let known: Vec<Option<f64>> = again.step("one", || panic!("it is known")).unwrap();
+        assert_eq!(known, [Some(third), None]);
+        assert_eq!(again.step("two", || Ok(2.0)).unwrap(), 2.0);
+        let other = Journal::open(Some(&path), "b".into());
+        assert_eq!(other.step("two", || Ok(3.0)).unwrap(), 3.0);
+        // Half a file counts as none.
+        std::fs::write(&path, "{\"format\": \"reach").unwrap();
+        let damaged = Journal::open(Some(&path), "b".into());
+        assert_eq!(damaged.step("two", || Ok(4.0)).unwrap(), 4.0);
+        // Without a file each step is done.
+        let none = Journal::open(None, "a".into());
+        assert_eq!(none.step("one", || Ok(1)).unwrap(), 1);
+        assert_eq!(none.step("one", || Ok(2)).unwrap(), 2);
+    }
+}
