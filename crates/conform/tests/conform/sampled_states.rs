@@ -5,7 +5,7 @@ use crate::common::{Random, conform_all, read, shared, step};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
-use reachtube_conform::{Notion, Settings, UncertaintySets};
+use reachtube_conform::{Settings, UncertaintySets};
 use reachtube_reach::{
     Disturbance, LinearSystem, Membership, MembershipProof, Place, Propagation, SampleGenerators,
     TimeGrid,
@@ -118,10 +118,11 @@ impl Sampled {
     }
 }
 
-/// Draws `count` states of each suite of the paper's arm, in the exact sets.
+/// Draws `count` states of each suite of the paper's arm, in the exact reachable sets of X0 and U
+/// in the notion hull, which are found soonest.
 fn tell_apart(count: usize) {
     let robot = Robot::lwa4p();
-    let settings = Settings { notion: Notion::Exact, ..Settings::new(Torque::Compensated, 6) };
+    let settings = Settings::new(Torque::Compensated, 6);
     let problem = read(&robot, &shared("schunk_lwa4p"), &SUITES, &settings);
     let sets = conform_all(&problem).sets;
     let system = linear_model(&robot, &ExpansionPoint::zero(6)).unwrap();
