@@ -33,7 +33,7 @@ fn assert_holds(coverage: &Coverage) {
 
 #[test]
 fn bounds_for_the_next_motion_hold_in_a_few_campaigns() {
-    assert_holds(&simulate(20, 400));
+    assert_holds(&simulate(10, 200));
 }
 
 #[test]
