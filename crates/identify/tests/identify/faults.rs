@@ -60,8 +60,11 @@ fn swapped_joints_are_named() {
 
 #[test]
 fn an_offset_of_a_position_is_named_with_its_size() {
-    let found = warnings(|rows| rows.iter_mut().for_each(|row| row[3] += 0.1));
-    assert_named(&found, &["position of joint3", "offset of 0.1", "correct the zero of q3"]);
+    let found = identified(0.03, 1..=3, |rows| rows.iter_mut().for_each(|row| row[3] += 0.1));
+    let parts = ["position of joint3", "offset of 0.", "correct the zero of q3"];
+    assert_named(&found.warnings, &parts);
+    let offset = found.offsets[2].offset.unwrap();
+    assert!((offset - 0.1).abs() < 0.005, "{:?}", found.offsets);
 }
 
 /// The residuals hardly change by such an offset, so that only its own estimate shows it.

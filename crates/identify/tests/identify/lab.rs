@@ -39,13 +39,10 @@ impl Lab {
         let mut recorder = Recorder { robot, noise, gains: gains.to_vec(), random: Random::new(5) };
         for seed in 1..=3 {
             let path = self.folder.path().join(format!("dynamic_{seed}.csv"));
-            recorder.record(&path, 24.0, excitation(robot.joint_count(), seed));
+            recorder.record(&path, 12.0, excitation(robot.joint_count(), seed));
         }
-        recorder.record(
-            &self.folder.path().join("held_out.csv"),
-            12.0,
-            excitation(robot.joint_count(), 9),
-        );
+        let path = self.folder.path().join("held_out.csv");
+        recorder.record(&path, 8.0, excitation(robot.joint_count(), 9));
     }
 
     /// Returns settings for the recordings of [`Lab::excite`].
@@ -74,7 +71,7 @@ impl Lab {
         for joint in 0..6 {
             for (k, pose) in [0.0, 0.8, -0.6].into_iter().enumerate() {
                 let name = PathBuf::from(format!("slow_{joint}_{k}.csv"));
-                recorder.record(&self.path().join(&name), 24.0, slow(6, joint, pose));
+                recorder.record(&self.path().join(&name), 12.0, slow(6, joint, pose));
                 settings.friction.push(name.into());
             }
         }

@@ -101,7 +101,7 @@ fn physical_links_predict_link_torque_as_well_as_plain_least_squares() {
     let mut squares = [[0.0; 2]; JOINTS];
     for round in 0..3 {
         let folder = tempfile::tempdir().unwrap();
-        for (name, duration, seed) in [("a", 24.0, 1), ("b", 24.0, 2), ("c", 15.0, 3)] {
+        for (name, duration, seed) in [("a", 12.0, 1), ("b", 12.0, 2), ("c", 8.0, 3)] {
             let path = folder.path().join(format!("{name}.csv"));
             record(&truth, &path, duration, 10 * round + seed);
         }

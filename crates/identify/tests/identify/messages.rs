@@ -73,10 +73,10 @@ fn a_recording_of_the_fit_cannot_validate() {
         order: None,
         compensated: false,
     };
-    recorded.settings.dynamic[1] = part(0.0, Some(16.0));
-    recorded.settings.validate = vec![part(16.0, None)];
+    recorded.settings.dynamic[1] = part(0.0, Some(8.0));
+    recorded.settings.validate = vec![part(8.0, None)];
     assert!(recorded.found().held_out);
-    recorded.settings.validate = vec![part(15.0, None)];
+    recorded.settings.validate = vec![part(7.0, None)];
     assert_parts(&recorded.error(), &["not held out", "disjoint intervals"]);
 }
 

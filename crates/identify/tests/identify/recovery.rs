@@ -148,6 +148,7 @@ fn a_wrong_sign_and_a_wrong_gain_give_warnings() {
     let lab = Lab::new();
     lab.excite(&truth, 0.3, &[1.0, 1.0, -1.0, 1.0, 1.0, 1.0]);
     let mut settings = lab.settings();
+    settings.model.windows = vec![];
     settings.model.physical = Some(true);
     let found = lab.identify(&geometry(&truth), &settings);
     let wrong_sign = |w: &String| w.contains("joint3") && w.contains("sign of its torque");
@@ -160,6 +161,7 @@ fn a_wrong_sign_and_a_wrong_gain_give_warnings() {
     let lab = Lab::new();
     lab.excite(&truth, 0.3, &[1.0, 1.0, 1.6, 1.0, 1.0, 1.0]);
     let mut settings = lab.settings();
+    settings.model.windows = vec![];
     settings.model.physical = Some(false);
     let found = lab.identify(&geometry(&truth), &settings);
     let gain = &found.gains[2];

@@ -36,7 +36,7 @@ fn recorded(physical: bool, change: impl Fn(&mut [f64])) -> (Lab, IdentifySettin
     let random = Random::new(5);
     let mut recorder = Recorder { robot: &arm, noise: 0.03, gains: vec![1.0; JOINTS], random };
     let path = lab.path().join("dynamic.csv");
-    recorder.record(&path, 15.0, excitation(JOINTS, 1));
+    recorder.record(&path, 10.0, excitation(JOINTS, 1));
     edit(&path, |rows: &mut Vec<Vec<f64>>| rows.iter_mut().for_each(|row| change(row)));
     let mut settings = lab.settings();
     settings.dynamic = vec![PathBuf::from("dynamic.csv").into()];
