@@ -136,8 +136,10 @@ impl Reading<'_> {
         let mut values = vec![0.0; columns.len()];
         loop {
             if self.defects.len() >= MOST_DEFECTS {
+                // On the line where it stopped, so that the defects before come first.
+                let line = line_of(bytes, record.position());
                 let problem = format!("reading stopped after {MOST_DEFECTS} defects");
-                self.defect(DefectKind::Other, None, problem, "correct the defects before");
+                self.defect(DefectKind::Other, Some(line), problem, "correct the defects before");
                 return;
             }
             match reader.read_byte_record(&mut record) {
