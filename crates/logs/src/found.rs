@@ -19,7 +19,7 @@ pub enum LogFiles {
 
 impl LogFiles {
     /// Returns the logs among files and folders: the path itself if it is one, or the logs in a
-    /// folder, CSV files before others. Subfolders count if the folder itself has no log.
+    /// folder, in the order of their names. Subfolders count if the folder itself has no log.
     ///
     /// # Errors
     ///
@@ -38,7 +38,12 @@ impl LogFiles {
             logs.clear();
         }
         let csv = group_files(csv).into_iter().map(Self::Csv);
-        Ok(csv.chain(logs.into_iter().map(Self::Container)).collect())
+        if logs.is_empty() {
+            return Ok(csv.collect());
+        }
+        let mut all: Vec<Self> = csv.chain(logs.into_iter().map(Self::Container)).collect();
+        all.sort_by(|a, b| a.path().cmp(b.path()));
+        Ok(all)
     }
 
     /// Returns the path for messages: of the only or the first file.

@@ -2,7 +2,7 @@
 
 use reachtube_conform::Finding;
 use reachtube_conform::result::{Code, Severity};
-use reachtube_identify::Implausible;
+use reachtube_identify::{Implausible, WrongColumns};
 
 use crate::choices::Choices;
 
@@ -16,7 +16,11 @@ pub(crate) fn contradiction(text: &str) -> Finding {
 /// make the model unacceptable.
 pub(crate) fn implausible(result: &Implausible) -> Finding {
     let severity = if result.columns.is_some() { Severity::Failure } else { Severity::Warning };
-    Finding { severity, ..contradiction(&result.text) }
+    let mut text = result.text.clone();
+    if result.columns == Some(WrongColumns::Unit) {
+        text += "; or the description is of another robot";
+    }
+    Finding { severity, ..contradiction(&text) }
 }
 
 /// Makes a warning of a clause.
@@ -24,12 +28,12 @@ pub(crate) fn warning(code: Code, text: &str) -> Finding {
     Finding::new(Severity::Warning, code, sentence(text))
 }
 
-/// Ends a clause about recordings, whose first word may be a path, as a sentence.
+/// Ends a clause as a sentence. A path or a name that it begins with stays as it is.
 fn sentence(text: &str) -> String {
-    let first = text.chars().next().map_or(0, char::len_utf8);
-    let is_path = text.split(' ').next().is_some_and(|word| word.contains(['/', '\\', '.']));
-    let (first, rest) = text.split_at(if is_path { 0 } else { first });
-    format!("{}{rest}.", first.to_uppercase())
+    let word = text.split(' ').next().unwrap_or_default();
+    let is_name = !word.chars().all(|c| c.is_ascii_lowercase());
+    let (first, rest) = text.split_at(usize::from(!is_name && !word.is_empty()));
+    format!("{}{rest}.", first.to_ascii_uppercase())
 }
 
 /// Makes contradictions warnings if factors of the torques are given: they state that the torques

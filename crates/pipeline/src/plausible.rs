@@ -2,7 +2,8 @@
 
 use reachtube_conform::Finding;
 use reachtube_conform::result::Remedy;
-use reachtube_identify::prepare::PreparedLog;
+use reachtube_identify::prepare::{PreparedLog, RawLog};
+use reachtube_recordings::Run;
 use reachtube_robot::Robot;
 
 use crate::findings::contradiction;
@@ -13,6 +14,9 @@ const FACTOR: f64 = 5.0;
 
 /// A correlation below the negative of this shows a wrong sign.
 const OPPOSITE: f64 = 0.5;
+
+/// A joint that leaves its first position by more than this moves, rad or m.
+const MOVES: f64 = 0.05;
 
 /// Samples of a recording that are looked at, at most.
 const SAMPLES: usize = 2000;
@@ -68,6 +72,40 @@ pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<Finding
     found
 }
 
+/// Returns the joints that move while their torque stays the same in every sample, as a finding.
+pub(crate) fn unmeasured(robot: &Robot, logs: &[&RawLog]) -> Option<Finding> {
+    let first = logs.first()?;
+    let moves = |joint: usize| {
+        let differs = |run: &Run| (0..run.len()).any(|k| off(run.q(k), run.q(0), joint) > MOVES);
+        logs.iter().any(|log| differs(&log.run))
+    };
+    let constant = first.run.torque(0).to_vec();
+    let is_constant = |joint: usize| {
+        let mut torques = logs.iter().flat_map(|log| (0..log.run.len()).map(|k| log.run.torque(k)));
+        torques.all(|torque| off(torque, &constant, joint) == 0.0)
+    };
+    let joints = (0..robot.joint_count()).filter(|joint| moves(*joint) && is_constant(*joint));
+    let joints: Vec<usize> = joints.collect();
+    let names: Vec<&str> = joints.iter().map(|i| robot.joints()[*i].name.as_str()).collect();
+    let value = constant.get(*joints.first()?)?;
+    let text = format!(
+        "the torque of {} is {value} in every sample, although the joint moves: it was not \
+         measured, and there is no model without it",
+        names.join(", ")
+    );
+    let remedy = Remedy {
+        setting: "lock".into(),
+        value: String::new(),
+        effect: "holds joints at positions that are given and leaves them out.".into(),
+    };
+    let place = Some(names.join(", "));
+    Some(Finding { place, remedy: Some(remedy), ..contradiction(&text) })
+}
+
+fn off(values: &[f64], others: &[f64], joint: usize) -> f64 {
+    (values[joint] - others[joint]).abs()
+}
+
 /// How one signal follows another.
 struct Correlation {
     /// The correlation, from -1 to 1; 0 where a signal is constant.
@@ -99,7 +137,7 @@ mod tests {
 
     /// A pendulum about a horizontal axis, and a log of it whose torques are `factor` times what it
     /// needs.
-    fn pendulum(factor: f64) -> (Robot, PreparedLog) {
+    fn pendulum(factor: f64) -> (Robot, RawLog) {
         let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
                      placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
                      mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
@@ -123,18 +161,29 @@ mod tests {
             moved: vec![],
             run,
         };
-        let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
-        (robot, log)
+        (robot, raw)
     }
 
     #[test]
     fn torques_of_another_sign_or_size_are_named() {
         let found = |factor: f64| -> Vec<String> {
-            let (robot, log) = pendulum(factor);
+            let (robot, raw) = pendulum(factor);
+            let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
             contradictions(&robot, &[log]).iter().map(ToString::to_string).collect()
         };
         assert_eq!(found(1.0), Vec::<String>::new());
         assert!(found(-1.0)[0].starts_with("The torque of hinge is opposite"), "{:?}", found(-1.0));
         assert!(found(0.1)[0].contains("0.10 times"), "{:?}", found(0.1));
+    }
+
+    #[test]
+    fn torques_that_were_not_measured_are_named() {
+        let found = |factor: f64| {
+            let (robot, raw) = pendulum(factor);
+            unmeasured(&robot, &[&raw]).map(|finding| finding.text)
+        };
+        assert_eq!(found(1.0), None);
+        let text = found(0.0).unwrap();
+        assert!(text.starts_with("The torque of hinge is 0 in every sample"), "{text}");
     }
 }

@@ -15,7 +15,7 @@ use reachtube_robot::Robot;
 use crate::error::Result;
 use crate::findings::implausible;
 use crate::held_out::Recording;
-use crate::plausible::contradictions;
+use crate::plausible::{contradictions, unmeasured};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -142,6 +142,10 @@ impl Evidence<'_> {
 
     /// Returns what contradicts the description in the recorded torques.
     fn contradictions(&self, described: &Robot) -> Result<Vec<Finding>> {
+        let logs: Vec<&RawLog> = self.motions.iter().map(|motion| &*motion.log).collect();
+        if let Some(finding) = unmeasured(described, &logs) {
+            return Ok(vec![finding]);
+        }
         if self.torque == Torque::Compensated {
             return Ok(Vec::new());
         }

@@ -189,8 +189,10 @@ impl Reading<'_> {
     fn has_too_many_defects(&mut self) -> bool {
         let is_over = self.defects.len() >= MOST_DEFECTS;
         if is_over {
+            // On the last line, so that the defects before come first.
+            let line = self.rows.last().map(|row| row.line);
             let problem = format!("reading stopped after {MOST_DEFECTS} defects");
-            self.defect(DefectKind::Other, None, problem, "correct the defects before");
+            self.defect(DefectKind::Other, line, problem, "correct the defects before");
         }
         is_over
     }

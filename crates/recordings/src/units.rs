@@ -125,6 +125,11 @@ fn ratio_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
     velocity_mismatch(run).into_iter().filter_map(defect).collect()
 }
 
+/// Returns a number with three decimals, or a huge one with its power of ten.
+fn size(value: f64) -> String {
+    if value < 1e6 { format!("{value:.3}") } else { format!("{value:.1e}") }
+}
+
 /// Returns a defect for each joint whose position is far beyond its limits.
 fn position_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
     let joints = robot.description().joints.iter().enumerate();
@@ -134,7 +139,8 @@ fn position_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
         (furthest > LIMIT_FACTOR * low.abs().max(high.abs())).then(|| {
             let unit = description.kind.position_unit();
             let problem = format!(
-                "|q| reaches {furthest:.3}, but the joint's limits are {low} and {high} {unit}"
+                "|q| reaches {}, but the joint's limits are {low} and {high} {unit}",
+                size(furthest)
             );
             let remedy =
                 format!("give q in {unit}, or correct the limits in the robot's description");
@@ -152,7 +158,7 @@ fn velocity_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
         (fastest > LIMIT_FACTOR * limit).then(|| {
             let unit = robot.joints()[joint].kind.velocity_unit();
             let problem =
-                format!("qd reaches {fastest:.3}, but the joint's limit is {limit} {unit}");
+                format!("qd reaches {}, but the joint's limit is {limit} {unit}", size(fastest));
             let remedy =
                 format!("give qd in {unit}, or correct the limit in the robot's description");
             joint_defect(path, joint, problem, &remedy)

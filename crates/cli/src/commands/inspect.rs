@@ -72,7 +72,7 @@ fn is_logs(path: &Path) -> bool {
 
 /// Summarises logs, and what was understood of each.
 fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
-    let robot = args.robot.as_ref().map(|name| args.lock.load(name)).transpose()?;
+    let robot = args.robot.as_ref().map(|name| args.lock.load_to_identify(name)).transpose()?;
     let robot = robot.as_ref();
     let columns = args.log.columns.clone().unwrap_or_default();
     let options = LoggedOptions {
@@ -107,7 +107,7 @@ fn outcome(inspection: Inspection) -> Result<Outcome> {
 /// Returns the kinds of the recorded joints.
 fn kinds(args: &Arguments, joints: usize) -> Result<Vec<JointKind>> {
     let Some(name) = &args.robot else { return Ok(vec![JointKind::Revolute; joints]) };
-    let kinds = args.lock.load(name)?.kinds();
+    let kinds = args.lock.load_to_identify(name)?.kinds();
     if kinds.len() == joints {
         return Ok(kinds);
     }

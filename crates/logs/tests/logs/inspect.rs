@@ -34,7 +34,8 @@ fn logs_of_all_formats_in_a_folder_are_summarised() {
     assert!(found.inspection.refused.is_empty(), "{:?}", found.inspection.refused);
     assert_eq!((found.inspection.runs, found.inspection.joints), (3, 3));
     let of = |index: usize| (found.logs[index].separator, found.logs[index].samples);
-    assert_eq!([of(0), of(1), of(2)], [("commas", 40), ("messages", 40), ("messages", 40)]);
+    // In the order of their names.
+    assert_eq!([of(0), of(1), of(2)], [("messages", 40), ("commas", 40), ("messages", 40)]);
     let log = &found.logs[2];
     assert_eq!(
         (log.tau[1].as_str(), log.time.as_str()),

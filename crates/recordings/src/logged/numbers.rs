@@ -71,7 +71,7 @@ impl Reading<'_> {
     fn row(&mut self, line: u64, row: &[&str]) -> bool {
         if self.defects.len() >= MOST_DEFECTS {
             let problem = format!("reading stopped after {MOST_DEFECTS} defects");
-            self.defect(DefectKind::Other, None, problem, "correct the defects before");
+            self.defect(DefectKind::Other, Some(line), problem, "correct the defects before");
             return false;
         }
         let fields = self.dialect.names.len();
