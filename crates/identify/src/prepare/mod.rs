@@ -10,6 +10,7 @@ pub(crate) mod changes;
 pub(crate) mod cut_off;
 mod derivative;
 pub(crate) mod entry;
+mod lag;
 pub(crate) mod log;
 mod low_pass;
 mod noise;
