@@ -11,6 +11,7 @@ mod container;
 pub(crate) mod cut_off;
 mod derivative;
 pub(crate) mod entry;
+mod lag;
 pub(crate) mod log;
 mod low_pass;
 mod noise;

@@ -3,6 +3,7 @@ use std::borrow::Cow;
 use crate::error::{Error, Result};
 use crate::prepare::changes::{LogChange, described};
 use crate::prepare::derivative::derivative;
+use crate::prepare::lag::Lag;
 use crate::prepare::log::PreparedLog;
 use crate::prepare::low_pass::{LowPass, TRANSIENT_PERIODS};
 use crate::prepare::raw_log::RawLog;
@@ -159,7 +160,7 @@ pub(crate) fn prepare_one(
     let differentiated = match settings.velocity {
         VelocitySource::Recorded => false,
         VelocitySource::Differentiated => true,
-        VelocitySource::Quieter => signals.is_differentiated_quieter(),
+        VelocitySource::Quieter => signals.is_differentiated_quieter() || signals.lag(),
     };
     let mut log = signals.log(&settings.gains, differentiated);
     if let Some(robot) = compensated {
@@ -205,6 +206,16 @@ impl<'a> Signals<'a> {
         let recorded: f64 = joints().map(|joint| removed(self.even(Run::qd, joint))).sum();
         let slope = |joint: usize| derivative(&self.even(Run::q, joint), self.step);
         recorded > joints().map(|joint| removed(slope(joint))).sum()
+    }
+
+    /// Returns whether the recorded velocities lag their positions.
+    fn lag(&self) -> bool {
+        let of_joint = |joint: usize| {
+            let [q, qd] = [Run::q, Run::qd].map(|of| self.filtered(self.even(of, joint)));
+            Lag::of_joint(&q, &qd, self.step)
+        };
+        let lags: Vec<Lag> = (0..self.raw.run.joints).filter_map(of_joint).collect();
+        Lag::contradict(&lags, self.step)
     }
 
     /// Returns the filtered log with the ends still in place.

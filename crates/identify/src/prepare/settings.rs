@@ -51,7 +51,8 @@ fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum VelocitySource {
-    /// The source from which the low-pass removes less, chosen for each log.
+    /// The source from which the low-pass removes less, chosen for each log; the position, if the
+    /// recorded velocity lags it by more than a sample time.
     #[default]
     Quieter,
     /// The recorded velocity.
