@@ -74,7 +74,7 @@ pub enum Error {
     },
     /// No recording is as long as a window.
     #[error(
-        "no recording that was kept is as long as the horizon of {horizon} s; give a shorter one"
+        "no recording is as long as the horizon of {horizon} s; give a shorter one"
     )]
     NoWindow {
         /// The horizon, s.
