@@ -74,9 +74,7 @@ pub enum Error {
         error: Box<Error>,
     },
     /// No recording is as long as a window.
-    #[error(
-        "no recording that was kept is as long as the horizon of {horizon} s; give a shorter one"
-    )]
+    #[error("no recording is as long as the horizon of {horizon} s; give a shorter one")]
     NoWindow {
         /// The horizon, s.
         horizon: f64,

@@ -15,10 +15,11 @@ use crate::trial::Trial;
 use crate::windows::Prepared;
 
 /// Windows on which a fit is tried: it takes a thousand times as long as the sets alone.
-const FIT_WINDOWS: usize = 24;
+const FIT_WINDOWS: usize = 12;
 
-/// What is fitted in a trial.
+/// What is fitted in a trial, and the weight of its pull, whose choice would take most of the time.
 const FITTED: Group = Group::Inertia;
+const PULL: f64 = 0.01;
 
 /// A choice helps if it makes the widest set narrower by this factor.
 const HELPS: f64 = 0.8;
@@ -104,7 +105,7 @@ impl TooWide<'_> {
             }
         }
         if self.trial.fit.is_none() {
-            let fit = Some(FitSettings { groups: vec![FITTED], pull: None });
+            let fit = Some(FitSettings { groups: vec![FITTED], pull: Some(PULL) });
             let before = self.widths(self.trial, own, FIT_WINDOWS)?;
             let after = self.widths(&Trial { fit, ..self.trial.clone() }, own, FIT_WINDOWS)?;
             tried.add("fit", FITTED.name(), FIT_WINDOWS, [&before, &after]);

@@ -160,7 +160,15 @@ fn summary(built: &Built, written: &[PathBuf], args: &Arguments) -> Summary {
     summary.fact(format!("wrote to {}", args.out.display()), names.join(", "));
     summary.next = Some(match built.is_useful() {
         true => format!("open {}", report_files::page_in(&args.out.join("page")).display()),
-        false => format!("read {}", args.out.join("choices.toml").display()),
+        false => {
+            let choices = args.out.join("choices.toml").display().to_string();
+            match built.remedies.iter().any(|finding| finding.remedy.is_some()) {
+                true => format!(
+                    "change {choices} so, then `reachtube model --settings {choices} --out FOLDER`"
+                ),
+                false => format!("read {choices}"),
+            }
+        }
     });
     summary
 }
