@@ -108,8 +108,8 @@ struct Decided<'a> {
 }
 
 impl Decided<'_> {
-    /// Chooses the horizon, finds the sets, and compares them with what was held out. `read` are the
-    /// notes and findings of the reading.
+    /// Chooses the horizon, finds the sets, and compares them with what was held out. `read` are
+    /// the notes and findings of the reading.
     fn finish(
         &self,
         mut chooser: Chooser,

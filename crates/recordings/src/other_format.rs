@@ -1,8 +1,8 @@
 //! Files that are no CSV text with a header.
 
 /// The header of a recording.
-pub(crate) const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, rad/s and N m \
-                      (m, m/s and N for a prismatic joint)";
+pub(crate) const HEADER: &str = "the header must be t,q1..qn,qd1..qdn,tau1..taun, in s, rad, \
+                                 rad/s and N m (m, m/s and N for a prismatic joint)";
 
 /// Returns problem and remedy of a file that is not text.
 pub(crate) fn not_text(bytes: &[u8]) -> Option<(String, &'static str)> {

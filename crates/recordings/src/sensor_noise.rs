@@ -51,8 +51,8 @@ pub fn noise_deviations(run: &Run) -> Option<Vec<f64>> {
     if run.len() < FEWEST {
         return None;
     }
-    // The weights of the neighbours of each inner sample, and the deviation of the difference by
-    // that of the noise.
+    // The weights of the neighbours of each inner sample, and the gain from the standard deviation
+    // of the noise to the difference.
     let weights: Vec<([f64; 4], f64)> = (2..run.len() - 2)
         .map(|k| {
             let w = cubic_weights(&run.times, k);

@@ -27,7 +27,7 @@ struct Without<'a> {
 /// notions than the hull. `sets` are the smallest for all motions: a motion that does not touch
 /// their reachable set decides nothing, and without it they are the smallest still. `rows` are the
 /// rows of the program that were generated for these sets; each of the other programs begins with
-/// those that nearly decide them.
+/// the rows that nearly decide the sets.
 ///
 /// # Errors
 ///

@@ -21,6 +21,7 @@ pub(crate) mod read;
 mod resample;
 pub(crate) mod rest;
 pub(crate) mod settings;
+mod signals;
 mod spectrum;
 pub(crate) mod survey;
 mod time_unit;

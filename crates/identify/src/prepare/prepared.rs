@@ -1,14 +1,12 @@
-use std::borrow::Cow;
-
 use crate::error::{Error, Result};
 use crate::prepare::changes::{LogChange, described};
 use crate::prepare::derivative::derivative;
-use crate::prepare::lag::Lag;
 use crate::prepare::log::PreparedLog;
 use crate::prepare::low_pass::{LowPass, TRANSIENT_PERIODS};
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource};
+use crate::prepare::signals::{Signals, add_motor_inertia, set_column};
 use rayon::prelude::*;
 use reachtube_recordings::{Run, Torque};
 use reachtube_robot::friction::Coulomb;
@@ -179,123 +177,6 @@ pub(crate) fn prepare_one(
     let jitter = raw.run.times.windows(2).map(deviation).fold(0.0, f64::max);
     let change = LogChange { median_step: median, jitter, differentiated };
     Ok((log.interval(end..samples - end), change))
-}
-
-/// The signals of a recording at an even sample time, and their low-pass.
-struct Signals<'a> {
-    raw: &'a RawLog,
-    filter: LowPass,
-    step: f64,
-}
-
-impl<'a> Signals<'a> {
-    fn even(&self, which: fn(&'a Run, usize) -> &'a [f64], joint: usize) -> Vec<f64> {
-        resampled(&self.raw.run.times, self.raw.column(which, joint), self.step)
-    }
-
-    fn filtered(&self, mut values: Vec<f64>) -> Vec<f64> {
-        self.filter.zero_phase(&mut values);
-        values
-    }
-
-    /// Returns whether the filter removes less from the differentiated position than from the
-    /// recorded velocity, summed over the joints.
-    fn is_differentiated_quieter(&self) -> bool {
-        let removed = |values: Vec<f64>| distance(&self.filtered(values.clone()), &values);
-        let joints = || 0..self.raw.run.joints;
-        let recorded: f64 = joints().map(|joint| removed(self.even(Run::qd, joint))).sum();
-        let slope = |joint: usize| derivative(&self.even(Run::q, joint), self.step);
-        recorded > joints().map(|joint| removed(slope(joint))).sum()
-    }
-
-    /// Returns whether the recorded velocities lag their positions.
-    fn lag(&self) -> bool {
-        let of_joint = |joint: usize| {
-            let [q, qd] = [Run::q, Run::qd].map(|of| self.filtered(self.even(of, joint)));
-            Lag::of_joint(&q, &qd, self.step)
-        };
-        let lags: Vec<Lag> = (0..self.raw.run.joints).filter_map(of_joint).collect();
-        Lag::contradict(&lags, self.step)
-    }
-
-    /// Returns the filtered log with the ends still in place.
-    fn log(&self, gains: &[f64], differentiated: bool) -> PreparedLog {
-        let n = self.raw.run.joints;
-        let mut log = PreparedLog::zeros(&self.raw.name, n, self.even(Run::q, 0).len(), self.step);
-        log.order = self.raw.order;
-        // Temperatures change too slowly to need the low-pass.
-        if !self.raw.run.temperatures.is_empty() {
-            log.temperatures = vec![0.0; log.q.len()];
-            (0..n).for_each(|joint| {
-                let column = self.even(Run::temperature, joint);
-                set_column(&mut log.temperatures, joint, n, &column);
-            });
-        }
-        for joint in 0..n {
-            let q = self.filtered(self.even(Run::q, joint));
-            let qd = if differentiated {
-                derivative(&q, self.step)
-            } else {
-                self.filtered(self.even(Run::qd, joint))
-            };
-            let gain = gains.get(joint).copied().unwrap_or(1.0);
-            let tau = self.filtered(self.even(Run::torque, joint));
-            let columns = [
-                (&mut log.q, q),
-                (&mut log.qdd, derivative(&qd, self.step)),
-                (&mut log.qd, qd),
-                (&mut log.tau, tau.into_iter().map(|tau| gain * tau).collect()),
-            ];
-            columns.into_iter().for_each(|(rows, column)| set_column(rows, joint, n, &column));
-        }
-        log
-    }
-
-    /// Replaces the torques by the input (11).
-    fn compensate(&self, log: &mut PreparedLog, robot: &Robot) {
-        let n = log.joints;
-        let taken_off = |k: usize| {
-            let (tau, robot) = (log.tau(k), warm_robot(robot, log, k));
-            let u = robot.input_from_holding_torque(log.q(k), log.qd(k), tau);
-            tau.iter().zip(&u).map(|(tau, u)| tau - u).collect::<Vec<f64>>()
-        };
-        let rows: Vec<f64> = (0..log.len()).flat_map(taken_off).collect();
-        for joint in 0..n {
-            let column = rows.iter().skip(joint).step_by(n).copied().collect();
-            let torques = log.tau.iter_mut().skip(joint).step_by(n);
-            torques.zip(self.filtered(column)).for_each(|(torque, off)| *torque -= off);
-        }
-    }
-}
-
-/// Adds to the input what the motors' inertia takes, J q̈, which a sensor behind the gear does not
-/// measure.
-fn add_motor_inertia(log: &mut PreparedLog, robot: &Robot) {
-    let inertia = robot.joints().iter().map(|joint| joint.armature).cycle();
-    let accelerations = log.tau.iter_mut().zip(&log.qdd).zip(inertia);
-    accelerations.for_each(|((tau, qdd), inertia)| *tau += inertia * qdd);
-}
-
-/// Returns the robot with the friction that it has at sample `k`, as far as the log knows it.
-fn warm_robot<'a>(robot: &'a Robot, log: &PreparedLog, k: usize) -> Cow<'a, Robot> {
-    if robot.warms_by().is_empty() {
-        return Cow::Borrowed(robot);
-    }
-    let n = log.joints;
-    let warm = robot.at_run(log.order.unwrap_or(1) as f64);
-    Cow::Owned(match log.temperatures.get(k * n..(k + 1) * n) {
-        Some(temperatures) => warm.at_temperature(temperatures),
-        None => warm,
-    })
-}
-
-fn set_column(rows: &mut [f64], joint: usize, n: usize, column: &[f64]) {
-    rows.iter_mut().skip(joint).step_by(n).zip(column).for_each(|(cell, value)| *cell = *value);
-}
-
-/// Returns the squared Euclidean distance.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
 #[cfg(test)]
