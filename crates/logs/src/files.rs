@@ -241,7 +241,8 @@ mod tests {
             std::fs::create_dir_all(path.parent().unwrap()).unwrap();
             std::fs::write(path, "").unwrap();
         };
-        ["day/bag/metadata.yaml", "day/bag/bag_0.db3", "day/b.mcap", "day/a.csv"].map(write);
+        let files = ["day/bag/metadata.yaml", "day/bag/bag_0.db3", "day/b.mcap", "day/a.csv"];
+        files.into_iter().for_each(write);
         let day = folder.path().join("day");
         let expected = [day.join("b.mcap"), day.join("bag")];
         assert_eq!(logs_in(&day).unwrap(), expected);

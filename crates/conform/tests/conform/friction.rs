@@ -34,7 +34,8 @@ fn swings(robot: &Robot, sizes: &[f64]) -> MemoryRuns {
         let mut solver = DormandPrince::new(2, Tolerance::default());
         let mut states = Vec::new();
         let run = Simulated { start: &[0.0, 0.0], inputs: &inputs[..SAMPLES - 1] };
-        solver.simulate(&mut field, &times, run, |_, x| states.extend_from_slice(x));
+        let ended = solver.simulate(&mut field, &times, run, |_, x| states.extend_from_slice(x));
+        assert!(ended.is_reached());
         let name = format!("swing{number}");
         let run = Run::new(1, times.clone(), states, inputs).unwrap();
         runs.push(&name, Some(&name), Some(&name), run);
