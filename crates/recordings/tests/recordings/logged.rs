@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use reachtube_recordings::{
     ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, is_recording,
