@@ -106,7 +106,8 @@ def check(found: Check) -> str:
 def built(found: BuiltModel, words: str) -> str:
     """Return verdict, sets beside the motion, and the comparison with what was held out."""
     text = verdict(found.useful, words)
-    text += "".join(f"<p>{escape(warning)}</p>" for warning in found.warnings)
+    said = [str(finding) for finding in found.findings if finding.severity != "info"]
+    text += "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
 
     def number(value: float | None, form: str) -> str:
         return "-" if value is None else format(value, form)

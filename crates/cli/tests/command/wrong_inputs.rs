@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
+use std::path::Path;
 
 use reachtube_robot::Robot;
 
@@ -157,4 +158,69 @@ fn a_log_that_is_a_turn_away_is_moved_and_named() {
     let answer = lab.run(&format!("{MODEL} --json")).exits(0).json();
     fits("model", &answer);
     assert_eq!(answer["findings"][0]["code"], "turns-moved", "{answer}");
+}
+
+/// Writes the recordings of a folder into `logs`, each row changed by `change` with the number of
+/// the recording, and the number of joints.
+fn rewrite(lab: &Lab, folder: &Path, change: &dyn Fn(&mut [f64], usize, usize)) {
+    std::fs::create_dir_all(lab.path("logs")).unwrap();
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> = files.filter(|file| file.extension().unwrap() == "csv").collect();
+    files.sort();
+    for (number, file) in files.iter().enumerate() {
+        let text = std::fs::read_to_string(file).unwrap();
+        let (header, rows) = text.split_once('\n').unwrap();
+        let joints = header.split(',').filter(|name| name.starts_with("qd")).count();
+        let mut written = format!("{header}\n");
+        for row in rows.lines() {
+            let mut cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
+            change(&mut cells, number, joints);
+            let cells: Vec<String> = cells.iter().map(f64::to_string).collect();
+            writeln!(written, "{}", cells.join(",")).unwrap();
+        }
+        let name = file.file_name().unwrap().to_str().unwrap();
+        lab.write(&format!("logs/{name}"), written);
+    }
+}
+
+#[test]
+#[ignore = "needs the recordings in ../shared"]
+fn recordings_of_two_arms_that_are_made_wrong_are_not_accepted() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let data = data.canonicalize().unwrap();
+    type Case<'a> = (&'a str, i32, &'a dyn Fn(&mut [f64], usize, usize));
+    let cases: [Case; 7] = [
+        ("the times look like milliseconds", 2, &|row, _, _| row[0] *= 1e3),
+        ("give q in rad", 2, &|row, _, n| {
+            row[1..=2 * n].iter_mut().for_each(|cell| *cell *= 360.0 / TAU);
+        }),
+        ("at rest", 2, &|row, _, n| row[1..=2 * n].iter_mut().for_each(|cell| *cell *= 1e-3)),
+        ("sign", 3, &|row, _, n| row[2 * n + 2] *= -1.0),
+        ("swapped", 3, &|row, _, n| {
+            let first = (n - 1).min(2);
+            [0, n, 2 * n].iter().for_each(|at| row.swap(first + at, first + at + 1));
+        }),
+        ("times what the description needs", 3, &|row, _, n| {
+            row[2 * n + 1..=3 * n].iter_mut().for_each(|cell| *cell /= 12.0);
+        }),
+        ("is a turn away from other recordings", 0, &|row, number, _| {
+            row[1] += if number == 2 { TAU } else { 0.0 };
+        }),
+    ];
+    let arms = [
+        ("ur10e/ur10e.urdf", "ur10e/excitation"),
+        ("double_pendulum/acrobot.urdf", "double_pendulum/openloop"),
+    ];
+    for (robot, logs) in arms {
+        for (cause, code, change) in cases {
+            let lab = Lab::new();
+            rewrite(&lab, &data.join(logs), change);
+            let robot = data.join(robot).display().to_string();
+            let run = lab.run(&MODEL.replace("arm.toml", &robot));
+            let all =
+                [&run.stderr, &run.stdout].map(|text| text.lines().take(4).collect::<String>());
+            assert_eq!(run.code, code, "{cause}: {run:#?}");
+            assert!(all.concat().contains(cause), "{cause}: {run:#?}");
+        }
+    }
 }

@@ -12,13 +12,17 @@ const NOISE_BANDS: usize = 4;
 /// its noise.
 const NEIGHBOURS: usize = 32;
 
+/// Least part of the power that must be beyond the noise: less may be noise by chance.
+const LEAST_SIGNAL: f64 = 0.01;
+
 /// Returns the bandwidth of one joint's motion \[Hz\]: 99.9 % of the power of its velocity lies
 /// below it, where only frequencies count at which the motion is stronger than the noise.
 ///
 /// `q` and `qd` are evenly spaced positions and velocities. The noise of each is taken to be white,
 /// and measured in the upper half of its spectrum, where the noise of a position that is
 /// differentiated grows with the frequency. The bandwidth is the lower one of the recorded velocity
-/// and the differentiated position, because noise affects one of them more than the other.
+/// and the differentiated position, because noise affects one of them more than the other. It is 0
+/// if neither shows a motion.
 #[must_use]
 pub(crate) fn motion_bandwidth(q: &[f64], qd: &[f64], step: f64) -> f64 {
     let slope = power_spectrum(&derivative(q, step));
@@ -31,24 +35,29 @@ pub(crate) fn motion_bandwidth(q: &[f64], qd: &[f64], step: f64) -> f64 {
     let of_slope = bandwidth(&slope, |k| noise * response(k), step);
     let recorded = power_spectrum(qd);
     let noise = white_noise(&recorded);
-    of_slope.min(bandwidth(&recorded, |_| noise, step))
+    let of_recorded = bandwidth(&recorded, |_| noise, step);
+    of_slope.into_iter().chain(of_recorded).reduce(f64::min).unwrap_or(0.0)
 }
 
 /// Returns the frequency \[Hz\] below which a spectrum has 99.9 % of its power beyond the noise.
-/// Frequencies at which the signal is weaker than the noise do not count.
-fn bandwidth(power: &[f64], noise: impl Fn(usize) -> f64, step: f64) -> f64 {
+/// Frequencies at which the signal is weaker than the noise do not count. The result is `None` for
+/// noise alone.
+fn bandwidth(power: &[f64], noise: impl Fn(usize) -> f64, step: f64) -> Option<f64> {
     let smooth = smoothed(power);
     let signal = |k: usize| match smooth[k] > 2.0 * noise(k) {
         true => (power[k] - noise(k)).max(0.0),
         false => 0.0,
     };
     let whole: f64 = (0..power.len()).map(signal).sum();
+    if whole <= LEAST_SIGNAL * power.iter().sum::<f64>() {
+        return None;
+    }
     let mut sum = 0.0;
     let index = (0..power.len()).position(|k| {
         sum += signal(k);
         sum >= POWER_SHARE * whole
     });
-    index.map_or(0.0, |k| k as f64 / (2 * power.len()) as f64 / step)
+    index.map(|k| k as f64 / (2 * power.len()) as f64 / step)
 }
 
 /// Returns the power of white noise in a spectrum. It is measured by medians, which a few
@@ -150,11 +159,11 @@ mod tests {
         assert!((found - 4.0).abs() < 0.2, "{found}");
         // A joint at rest has noise alone.
         let rest: Vec<f64> = (0..20_000).map(|_| noise(0.05)).collect();
-        assert!(motion_bandwidth(&rest, &rest, step) < 20.0);
+        assert_eq!(motion_bandwidth(&rest, &rest, step), 0.0);
     }
 
     /// The bandwidth of all power, noise included.
     fn whole_bandwidth(values: &[f64], step: f64) -> f64 {
-        bandwidth(&power_spectrum(values), |_| 0.0, step)
+        bandwidth(&power_spectrum(values), |_| 0.0, step).unwrap()
     }
 }
