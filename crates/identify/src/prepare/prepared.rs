@@ -6,6 +6,7 @@ use crate::prepare::derivative::derivative;
 use crate::prepare::lag::Lag;
 use crate::prepare::log::PreparedLog;
 use crate::prepare::low_pass::{LowPass, TRANSIENT_PERIODS};
+use crate::prepare::motors::add_motor_inertia;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource};
@@ -266,14 +267,6 @@ impl<'a> Signals<'a> {
             torques.zip(self.filtered(column)).for_each(|(torque, off)| *torque -= off);
         }
     }
-}
-
-/// Adds to the input what the motors' inertia takes, J q̈, which a sensor behind the gear does not
-/// measure.
-fn add_motor_inertia(log: &mut PreparedLog, robot: &Robot) {
-    let inertia = robot.joints().iter().map(|joint| joint.armature).cycle();
-    let accelerations = log.tau.iter_mut().zip(&log.qdd).zip(inertia);
-    accelerations.for_each(|((tau, qdd), inertia)| *tau += inertia * qdd);
 }
 
 /// Returns the robot with the friction that it has at sample `k`, as far as the log knows it.
