@@ -14,6 +14,7 @@ pub(crate) mod entry;
 mod lag;
 pub(crate) mod log;
 mod low_pass;
+mod motors;
 mod noise;
 pub(crate) mod prepared;
 pub(crate) mod raw_log;

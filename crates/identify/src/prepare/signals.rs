@@ -97,14 +97,6 @@ impl<'a> Signals<'a> {
     }
 }
 
-/// Adds to the input what the motors' inertia takes, J q̈, which a sensor behind the gear does not
-/// measure.
-pub(super) fn add_motor_inertia(log: &mut PreparedLog, robot: &Robot) {
-    let inertia = robot.joints().iter().map(|joint| joint.armature).cycle();
-    let accelerations = log.tau.iter_mut().zip(&log.qdd).zip(inertia);
-    accelerations.for_each(|((tau, qdd), inertia)| *tau += inertia * qdd);
-}
-
 /// Returns the robot with the friction that it has at sample `k`, as far as the log knows it.
 fn warm_robot<'a>(robot: &'a Robot, log: &PreparedLog, k: usize) -> Cow<'a, Robot> {
     if robot.warms_by().is_empty() {
