@@ -53,7 +53,7 @@ impl<'a> Journal<'a> {
     ///
     /// # Errors
     ///
-    /// Those of the step, which are not kept, and a file that cannot be written.
+    /// An error of the step, which is not kept, and a file that cannot be written.
     pub(crate) fn step<T: Serialize + DeserializeOwned>(
         &self,
         name: &str,

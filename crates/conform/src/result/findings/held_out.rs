@@ -8,8 +8,8 @@ use crate::check::Check;
 const FEWEST: usize = 2;
 
 impl Check {
-    /// Returns the factor by which the radii of X0 and U would have to grow so that the sets enclose
-    /// all recordings of the check, 1 where they do; `None` where no factor suffices.
+    /// Returns the factor by which the radii of X0 and U would have to grow so that the sets
+    /// enclose all recordings of the check, 1 where they do; `None` where no factor suffices.
     #[must_use]
     pub fn factor_of_sets(&self) -> Option<f64> {
         match &self.growth {
