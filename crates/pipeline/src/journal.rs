@@ -54,7 +54,7 @@ impl<'a> Journal<'a> {
     ///
     /// # Errors
     ///
-    /// Errors of the step, which are not kept; a file that cannot be written.
+    /// An error of the step, which is not kept, and a file that cannot be written.
     pub(crate) fn step<T: Serialize + DeserializeOwned>(
         &self,
         name: &str,

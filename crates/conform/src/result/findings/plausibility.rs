@@ -312,6 +312,27 @@ mod tests {
     }
 
     #[test]
+    fn what_was_applied_is_not_proposed_again() {
+        let written = |cause: &Cause| Finding::from(&Warning::from(cause)).to_string();
+        let long = written(&Cause::Horizon { unexplained: 0.1, longest: 31.2 });
+        assert!(
+            long.contains("last up to 31.2 s") && long.contains("`--horizon 0.5` cuts"),
+            "{long}"
+        );
+        let parameters = |is_identified, is_fitted| {
+            let (unexplained, longest) = (0.1, 0.5);
+            written(&Cause::Parameters { unexplained, is_identified, is_fitted, longest })
+        };
+        let first = parameters(false, false);
+        assert!(first.contains("`reachtube identify`") && first.contains("`--fit`"), "{first}");
+        let identified = parameters(true, false);
+        assert!(!identified.contains("`reachtube identify`"), "{identified}");
+        assert!(identified.ends_with("`--fit` names the parameters to fit."), "{identified}");
+        let fitted = parameters(true, true);
+        assert!(!fitted.contains("--fit") && fitted.contains("`--horizon 0.2`"), "{fitted}");
+    }
+
+    #[test]
     fn a_warning_of_an_earlier_version_is_read() {
         let old = r#"{"kind": "cause", "joints": [], "text": "the cause: x (--torque motor)"}"#;
         let finding = Finding::from(&serde_json::from_str::<Warning>(old).unwrap());
