@@ -193,10 +193,8 @@ fn add_friction(
         let known = slow.map(|fit| &fit.joint.standard_errors);
         joint.friction.standard_errors = friction_errors(inertia, j, known);
         let logs = inputs.friction.iter().filter(|_| is_known);
-        let is_fitted = inertia
-            .columns
-            .iter()
-            .any(|column| *column == Parameter { joint: j, kind: ParameterKind::Viscous1 });
+        let is_fitted =
+            inertia.columns.contains(&Parameter { joint: j, kind: ParameterKind::Viscous1 });
         let logs = logs.chain(inputs.dynamic.iter().filter(|_| is_fitted));
         let all = logs.flat_map(|log| log.qd.iter().skip(j).step_by(log.joints));
         let range = all.fold([0.0f64; 2], |[low, high], qd| [low.min(*qd), high.max(*qd)]);

@@ -63,7 +63,7 @@ impl Render for Explained<'_> {
 /// Renders a text, and what is between two backticks in it as code.
 fn with_code(text: &str, buffer: &mut String) {
     let parts: Vec<&str> = text.split('`').collect();
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return text.render_to(buffer);
     }
     for (number, part) in parts.into_iter().enumerate() {

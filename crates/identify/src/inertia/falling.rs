@@ -61,7 +61,7 @@ impl ViscousColumns<'_> {
             let conditions = replaced.iter().map(|(joint, _)| self.condition(*joint, &plain));
             *x = solve(&conditions.collect::<Vec<_>>())?;
         }
-        let [before, after] = [&plain, x].map(|x| sizes(x));
+        let [before, after] = [&plain, x].map(sizes);
         let described = replaced.into_iter().map(|(joint, falls_beyond)| FallingFriction {
             joint: self.known.joints()[joint].name.clone(),
             viscous: self.condition(joint, &plain).viscous(plain.as_slice()),
