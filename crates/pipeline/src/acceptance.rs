@@ -11,6 +11,7 @@ impl Built {
     pub fn is_useful(&self) -> bool {
         self.choices.accept(&self.answer.model)
             && self.growth_not_accepted().is_none()
+            && self.held_out.part_outside() <= self.choices.largest_outside()
             && self.contradiction().is_none()
     }
 
@@ -37,19 +38,23 @@ impl Built {
 
     /// Returns why a model that was proved and is not vacuous is of no use, in a few words.
     pub(crate) fn why_useless(&self) -> String {
-        match self.growth_not_accepted().filter(|_| self.choices.accept(&self.answer.model)) {
-            None => "too wide to be of use".into(),
-            Some((joint, factor)) => {
-                let name = &self.answer.model.robot.joints[joint].name;
-                match factor.is_finite() {
-                    true => format!(
-                        "held-out motions need {factor:.1} times the set of {name} (at most {} is \
-                         accepted),",
-                        self.largest_growth()
-                    ),
-                    false => "held-out motions could not be followed".into(),
-                }
+        if !self.choices.accept(&self.answer.model) {
+            return "too wide to be of use".into();
+        }
+        match self.growth_not_accepted() {
+            None => format!(
+                "{:.1} % of the held-out rows are outside (at most {} % is accepted),",
+                100.0 * self.held_out.part_outside(),
+                100.0 * self.choices.largest_outside()
+            ),
+            Some((_, factor)) if factor.is_infinite() => {
+                "held-out motions could not be followed".into()
             }
+            Some((joint, factor)) => format!(
+                "held-out motions need {factor:.1} times the set of {} (at most {} is accepted),",
+                self.answer.model.robot.joints[joint].name,
+                self.largest_growth()
+            ),
         }
     }
 }

@@ -7,7 +7,7 @@ use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
-use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_RATIO};
+use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_RATIO};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::cut::rounded;
@@ -145,7 +145,7 @@ impl Decided<'_> {
         let whole = split.held_out_motions();
         let compared = Compared::new(&answer, &recordings, &held_back, horizon, whole)?;
         let Compared { held_out, shown, shown_held_out } = compared;
-        findings.extend(read.1.into_iter().chain(held_out.finding()));
+        findings.extend(read.1.into_iter().chain(held_out.finding(choices)));
         Ok(Built {
             answer,
             robot,
@@ -216,6 +216,7 @@ fn sets(
     let largest = chooser.choices.largest_ratio.unwrap_or(LARGEST_RATIO);
     chooser.choices.largest_ratio = Some(largest);
     chooser.choices.largest_growth.get_or_insert(LARGEST_GROWTH);
+    chooser.choices.largest_outside.get_or_insert(LARGEST_OUTSIDE);
     let mut horizons = choose_equations(chooser, trial, recordings, largest)?;
     let groups = chooser.choices.fit.clone().unwrap_or_default();
     let pull = chooser.choices.pull;

@@ -19,6 +19,9 @@ pub(crate) const LARGEST_RATIO: f64 = 0.5;
 /// The factor by which a joint's set may have to grow for motions that were held out, by default.
 pub(crate) const LARGEST_GROWTH: f64 = 2.0;
 
+/// The part of the rows of held-out motions that may lie outside the sets, by default.
+pub(crate) const LARGEST_OUTSIDE: f64 = 0.01;
+
 /// Largest number of columns of a comment.
 const COLUMNS: usize = 96;
 
@@ -62,6 +65,9 @@ pub struct Choices {
     /// are held out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_growth: Option<f64>,
+    /// The largest accepted part of the rows of held-out motions that lies outside the sets.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_outside: Option<f64>,
     /// Time up to which the model predicts, s: the length of the windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horizon: Option<f64>,
@@ -149,6 +155,11 @@ impl Choices {
         Ok(choices)
     }
 
+    /// Returns the part of the rows of held-out motions that may lie outside the sets.
+    pub(crate) fn largest_outside(&self) -> f64 {
+        self.largest_outside.unwrap_or(LARGEST_OUTSIDE)
+    }
+
     /// Returns whether the sets of a model were proved, limit every joint, and are narrow enough at
     /// the horizon.
     pub(crate) fn accept(&self, model: &Model) -> bool {
@@ -181,6 +192,7 @@ impl Choices {
             sensor_noise: given.sensor_noise.or(self.sensor_noise),
             largest_ratio: given.largest_ratio.or(self.largest_ratio),
             largest_growth: given.largest_growth.or(self.largest_growth),
+            largest_outside: given.largest_outside.or(self.largest_outside),
             horizon: given.horizon.or(self.horizon),
             fit: given.fit.or(self.fit),
             pull: given.pull.or(self.pull),

@@ -5,15 +5,13 @@ use reachtube_conform::{Answer, Check, Finding, Silent};
 use reachtube_recordings::{MemoryRuns, RunSource};
 use serde::Serialize;
 
+use crate::choices::Choices;
 use crate::error::{Error, Result};
 use crate::findings::warning;
 use crate::windows::Prepared;
 
 /// Windows on a page, besides the deciding ones.
 const MOST_SHOWN: usize = 12;
-
-/// The part of the rows that were held out which may lie outside without a warning.
-const LARGEST_PART: f64 = 0.01;
 
 /// A model beside motions that were held out from every choice.
 #[derive(Debug, Clone, Serialize)]
@@ -67,12 +65,18 @@ impl Compared {
 }
 
 impl HeldOut {
+    /// Returns the part of the rows that lies outside the sets.
+    #[must_use]
+    pub fn part_outside(&self) -> f64 {
+        self.outside as f64 / self.rows.max(1) as f64
+    }
+
     /// Returns a finding where the sets do not carry over to what was held out.
-    pub(crate) fn finding(&self) -> Option<Finding> {
-        let part = self.outside as f64 / self.rows.max(1) as f64;
+    pub(crate) fn finding(&self, choices: &Choices) -> Option<Finding> {
+        let part = self.part_outside();
         let text = match &self.failure {
             Some(failure) => format!("what was held out could not be compared: {failure}"),
-            None if part > LARGEST_PART => format!(
+            None if part > choices.largest_outside() => format!(
                 "{:.1} % of the rows that were held out lie outside the sets: the other \
                  recordings do not cover them; record more motions, and faster ones",
                 100.0 * part
