@@ -149,7 +149,7 @@ cut_off = 8.0
     lab.run("identify --robot pendulum.toml").fails_with(&["--dynamic"]);
     lab.run("identify --dynamic a.csv").fails_with(&["--robot"]);
     lab.run("identify --robot pendulum.toml --dynamic nowhere.csv")
-        .fails_with(&["nowhere.csv", "CSV file"]);
+        .fails_with(&["nowhere.csv", "give a log"]);
     lab.run("identify --robot pendulum.toml --dynamic a.csv --gains 1,2")
         .fails_with(&["gains: 2 given", "each of the 1 joints"]);
 }
