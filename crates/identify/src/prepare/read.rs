@@ -312,7 +312,7 @@ mod tests {
         assert_eq!((logs[0].run.torque(0)[5], logs[0].order), (10.0, Some(7)));
         let nowhere =
             read(&[LogEntry::Path("b".into())], folder.path(), &robot, &PrepareSettings::default());
-        assert!(nowhere.unwrap_err().to_string().contains("folder of them"));
+        assert!(nowhere.unwrap_err().to_string().contains("folder of logs"));
     }
 
     #[test]
