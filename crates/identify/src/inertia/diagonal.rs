@@ -114,7 +114,8 @@ impl Directions {
     /// Returns the standard error of the combination `row` of the parameters.
     fn error(&self, row: &DVector<f64>) -> f64 {
         // A column that no row shows leaves its parameter open.
-        let hidden = row.iter().zip(&self.unit).any(|(part, unit)| *unit == 0.0 && *part != 0.0);
+        let least = NEGLIGIBLE * row.amax();
+        let hidden = row.iter().zip(&self.unit).any(|(x, unit)| *unit == 0.0 && x.abs() > least);
         let scaled = row.component_mul(&self.unit);
         let size = scaled.norm();
         let part = |(direction, error): (usize, &Option<f64>)| {
