@@ -94,7 +94,7 @@ impl<'a> PartReader<'a> {
     ///
     /// # Errors
     ///
-    /// As [`Problem::grids`].
+    /// If the solution of the system cannot be enclosed over a grid.
     pub fn new(fleet: &'a FleetProblem) -> Result<Self> {
         let points = AllPoints::new(&fleet.problem)?;
         Ok(Self { fleet, tree: Tree::default(), points, files: BTreeMap::new() })
@@ -148,7 +148,8 @@ impl PartPoints {
     ///
     /// # Errors
     ///
-    /// [`Error::Fold`] for bytes that are no question; as [`Problem::grids`].
+    /// [`Error::Fold`] for bytes that are no question; if the solution of the
+    /// system cannot be enclosed over a grid.
     pub fn answer(&self, fleet: &FleetProblem, question: &[u8]) -> Result<Vec<u8>> {
         let question = question_from_bytes(question)?;
         let file = |run: u32| self.files.get(&run).cloned().unwrap_or_default();

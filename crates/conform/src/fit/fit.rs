@@ -4,7 +4,7 @@ use reachtube_abstraction::Abstraction;
 use crate::data::dynamics::Dynamics;
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
-use crate::data::settings::{Method, Weights};
+use crate::data::settings::{Equations, Method, Weights};
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
@@ -68,7 +68,11 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     if data.motions.len() < 2 {
         return Err(Error::Fit(one_motion(kept.is_some())));
     }
-    let joints = setup.robot.joint_count();
+    // Friction that a linear model does not have cannot fall in it.
+    let is_cubic = problem.dynamics().linear_system().is_none()
+        || setup.settings.equations == Equations::Robot
+        || settings.groups.contains(&Group::Cubic);
+    let joints = if is_cubic { setup.robot.joint_count() } else { 0 };
     let speeds: Vec<f64> = (0..joints).map(|j| steering.highest_speed(j)).collect();
     let parameters = Parameters::new(setup, &settings.groups, &speeds);
     if parameters.len() == 0 {

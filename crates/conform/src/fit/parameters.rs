@@ -85,7 +85,8 @@ impl Quantity {
 
 impl<'a> Parameters<'a> {
     /// Lists the parameters of `groups` that the robot has. Without a velocity limit, friction must
-    /// rise up to twice the highest speed of each joint in the recordings, `speeds`, rad/s.
+    /// rise up to twice the highest speed of each joint in the recordings, `speeds`, rad/s; no
+    /// speeds for a model whose friction is linear.
     pub(crate) fn new(setup: &'a Setup, groups: &[Group], speeds: &[f64]) -> Self {
         let robot = &setup.robot;
         let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);

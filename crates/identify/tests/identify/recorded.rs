@@ -34,6 +34,12 @@ fn no_worse_than_one_joint_fit(found: &Identification, settings: &str) {
     }
 }
 
+/// Returns whether friction of a joint, from 0, was made to rise with speed.
+fn is_rising(found: &Identification, joint: usize) -> bool {
+    let name = &found.description.joints[joint].name;
+    found.inertia.falling.iter().any(|falling| falling.joint == *name)
+}
+
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn the_ur10e_predicts_validation_recordings() {
@@ -57,8 +63,10 @@ fn the_ur10e_predicts_validation_recordings() {
     assert_eq!(all.log, "all");
     for (j, joint) in all.joints.iter().enumerate() {
         assert!(joint.relative.unwrap() < 0.1, "joint {}: {joint:?}", j + 1);
+        // Friction of joint 1 would fall beyond 1.6 rad/s, and rises at a price.
+        let most = if is_rising(&found, j) { 1.5 } else { 1.05 };
         assert!(
-            joint.relative.unwrap() < 1.05 * joint.relative_plain.unwrap(),
+            joint.relative.unwrap() < most * joint.relative_plain.unwrap(),
             "as good as plain least squares: {joint:?}"
         );
     }
@@ -197,11 +205,12 @@ fn half_of_the_pandas_motion_predicts_the_other_half() {
     );
     let mut settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
     let robot = panda();
-    // Base parameters stay equal to least squares.
+    // Base parameters stay equal to least squares, but for friction that would fall.
     let base = identify(&robot, &settings, &PathBuf::from(DATA), &|_, _| {}).unwrap();
+    let falls = (0..7).any(|joint| is_rising(&base, joint));
     for joint in &base.validation[0].joints {
         let ratio = joint.relative.unwrap() / joint.relative_plain.unwrap();
-        assert!((ratio - 1.0).abs() < 1e-6, "{joint:?}");
+        assert!(if falls { ratio < 1.05 } else { (ratio - 1.0).abs() < 1e-6 }, "{joint:?}");
     }
     assert!(base.warnings.iter().any(|w| w.contains("cannot exist")), "{:?}", base.warnings);
     settings.model.physical = Some(true);
