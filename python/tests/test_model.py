@@ -51,7 +51,7 @@ def built(
 ) -> rt.BuiltModel:
     # Three motions give sets so small that the fourth needs three times the set of a joint.
     choices = tmp_path_factory.mktemp("choices") / "choices.toml"
-    choices.write_text("largest-growth = 4.0\nlargest-outside = 0.1\n")
+    choices.write_text("largest-growth = 4.0\nlargest-outside = 0.2\n")
     return rt.model(arm, logs, torque="motor", horizon=0.1, settings=choices)
 
 

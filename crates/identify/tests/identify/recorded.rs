@@ -201,7 +201,8 @@ fn half_of_the_pandas_motion_predicts_the_other_half() {
     let settings = format!(
         "dynamic = [{{ path = \"{file}\", until = 7.5 }}]\n\
          validate = [{{ path = \"{file}\", from = 7.5 }}]\n\
-         prepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.windows = []"
+         prepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.physical = false\n\
+         model.windows = []"
     );
     let mut settings = IdentifySettings::from_toml(&settings, "settings").unwrap();
     let robot = panda();
