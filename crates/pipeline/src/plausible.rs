@@ -3,7 +3,7 @@
 use reachtube_conform::Finding;
 use reachtube_conform::result::Remedy;
 use reachtube_identify::prepare::{PreparedLog, RawLog};
-use reachtube_recordings::Run;
+use reachtube_recordings::{Run, Torque};
 use reachtube_robot::Robot;
 
 use crate::findings::contradiction;
@@ -22,20 +22,26 @@ const MOVES: f64 = 0.05;
 const SAMPLES: usize = 2000;
 
 /// Returns what contradicts the robot's description in the torques of filtered recordings. The
-/// torques must still contain gravity. A description that is no body has no torques to compare
-/// with.
-pub(crate) fn contradictions(robot: &Robot, logs: &[PreparedLog]) -> Vec<Finding> {
+/// torques must still contain gravity. A description that is no body, or whose links have no mass,
+/// has no torques to compare with.
+pub(crate) fn contradictions(robot: &Robot, kind: Torque, logs: &[PreparedLog]) -> Vec<Finding> {
     let n = robot.joint_count();
-    if robot.check_physical().is_err() || logs.is_empty() {
+    let is_bare = robot.inertial_parameters().iter().all(|parameter| *parameter == 0.0);
+    if is_bare || robot.check_physical().is_err() || logs.is_empty() {
         return Vec::new();
     }
+    // Sensors behind the gears do not show what the motors' inertia takes.
+    let of_motors = |joint: usize, qdd: f64| match kind {
+        Torque::Link => robot.joints()[joint].armature * qdd,
+        Torque::Motor | Torque::Compensated => 0.0,
+    };
     // Means, and sums of products of what the description needs with what was recorded.
     let (mut needed, mut recorded) = (vec![Vec::new(); n], vec![Vec::new(); n]);
     for log in logs {
         for k in (0..log.len()).step_by((log.len() / SAMPLES).max(1)) {
             let torque = robot.inverse_dynamics(log.q(k), log.qd(k), log.qdd(k));
             for joint in 0..n {
-                needed[joint].push(torque[joint]);
+                needed[joint].push(torque[joint] - of_motors(joint, log.qdd(k)[joint]));
                 recorded[joint].push(log.tau(k)[joint]);
             }
         }
@@ -169,7 +175,7 @@ mod tests {
         let found = |factor: f64| -> Vec<String> {
             let (robot, raw) = pendulum(factor);
             let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
-            contradictions(&robot, &[log]).iter().map(ToString::to_string).collect()
+            contradictions(&robot, Torque::Motor, &[log]).iter().map(ToString::to_string).collect()
         };
         assert_eq!(found(1.0), Vec::<String>::new());
         assert!(found(-1.0)[0].starts_with("The torque of hinge is opposite"), "{:?}", found(-1.0));

@@ -152,7 +152,7 @@ impl Evidence<'_> {
         let raw: Vec<RawLog> =
             self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         let logs = prepare(&raw, self.settings, self.cut_off, None)?.logs;
-        Ok(contradictions(described, &logs))
+        Ok(contradictions(described, self.torque, &logs))
     }
 
     /// Identifies the robot from what is not held out.

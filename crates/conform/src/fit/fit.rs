@@ -68,12 +68,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     if data.motions.len() < 2 {
         return Err(Error::Fit(one_motion(kept.is_some())));
     }
-    // Friction that a linear model does not have cannot fall in it.
-    let is_cubic = problem.dynamics().linear_system().is_none()
-        || setup.settings.equations == Equations::Robot
-        || settings.groups.contains(&Group::Cubic);
-    let joints = if is_cubic { setup.robot.joint_count() } else { 0 };
-    let speeds: Vec<f64> = (0..joints).map(|j| steering.highest_speed(j)).collect();
+    let speeds = speeds_of_friction(problem, steering, &settings.groups);
     let parameters = Parameters::new(setup, &settings.groups, &speeds);
     if parameters.len() == 0 {
         return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
@@ -110,6 +105,16 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     // The numbers go to the model that was asked for, with all motions.
     let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
     Ok(Fitted { problem, record })
+}
+
+/// Returns the highest recorded speed of each joint, rad/s; none for a linear model whose friction
+/// is linear too: it cannot fall with speed.
+fn speeds_of_friction(problem: &Problem, steering: &Problem, groups: &[Group]) -> Vec<f64> {
+    let is_cubic = problem.dynamics().linear_system().is_none()
+        || problem.settings().equations == Equations::Robot
+        || groups.contains(&Group::Cubic);
+    let joints = if is_cubic { steering.robot().joint_count() } else { 0 };
+    (0..joints).map(|joint| steering.highest_speed(joint)).collect()
 }
 
 /// Searches with `pull` in parts of the identified model's cost: few runs of each suite show where
