@@ -172,7 +172,7 @@ fn identification_reads_logs() {
     let from_log = lab.run(&format!("{identify} run.mcap"));
     assert_eq!(from_csv.code, from_log.code, "{from_csv:?} {from_log:?}");
     assert!(from_log.stderr.contains("matched by name"), "{from_log:?}");
-    // What was done to the messages is said of the log alone.
+    // Only the log has notes about its messages.
     let same = |run: &crate::fixture::Run| {
         let mut json = run.json();
         let changes = json["changes"].as_array_mut().unwrap();

@@ -153,8 +153,8 @@ fn a_log_that_is_a_turn_away_is_moved_and_named() {
         }
     });
     let run = lab.run(MODEL);
-    // After the verdict, which takes one line or two. Of so few motions, the held-out ones may
-    // leave the sets: that is another answer, no error.
+    // After the verdict, which takes one line or two. Held-out motions may leave sets of so few:
+    // that is another answer, no error.
     let text = run.stdout.lines().skip(1).take(3).collect::<String>();
     assert!(run.code != 2 && text.contains("log_2.csv: shoulder is a turn away"), "{run:#?}");
     let answer = lab.run(&format!("{MODEL} --json")).json();
