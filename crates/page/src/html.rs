@@ -102,7 +102,7 @@ fn verdict(verdict: &Verdict) -> Markup {
     let (class, word) = match (ok, vacuous, useful, warnings.is_empty()) {
         (false, ..) => ("verdict bad", "Not conformant"),
         (true, true, ..) => ("verdict bad", "Conformant, but vacuous"),
-        (true, false, Some(false), _) => ("verdict bad", "Conformant, but too wide to be of use"),
+        (true, false, Some(false), _) => ("verdict bad", "Conformant, but not accepted"),
         (true, false, Some(true), true) => ("verdict ok", "Conformant and useful"),
         (true, false, None, true) => ("verdict ok", "Conformant"),
         (true, false, Some(true), false) => {
@@ -264,7 +264,7 @@ mod tests {
         page.verdict.useful = Some(true);
         assert!(written(&page).contains(">Conformant and useful<"));
         page.verdict.useful = Some(false);
-        assert!(written(&page).contains(">Conformant, but too wide to be of use<"));
+        assert!(written(&page).contains(">Conformant, but not accepted<"));
         page.verdict.ok = false;
         assert!(written(&page).contains(">Not conformant<"));
     }
