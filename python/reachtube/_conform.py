@@ -201,7 +201,7 @@ def _cut(
         torque,
         real("horizon", horizon),
         None if max_gap is None else real("max_gap", max_gap),
-        *native_of_logs(data),  # type: ignore[arg-type]
+        *native_of_logs(data),
     )
 
 
