@@ -14,7 +14,7 @@ def grown(reachtube, before, folder, root):
         for arguments in commands:
             common = ["conform", "--torque", "compensated", *arguments, "--out", folder / "m.json"]
             old = before and [before, *common]
-            found.append(in_turn([[reachtube, "--quiet", *common], old], rounds=2))
+            found.append(in_turn([[reachtube, "--quiet", *common], old], rounds=1))
         return [own for own, _ in found], [old for _, old in found if old]
 
     def arm(robot, data, *more):
