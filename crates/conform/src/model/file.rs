@@ -202,7 +202,7 @@ impl Model {
             cost_paper: found.paper_cost,
             hull_volume: finite(found.hull_volume),
             search: found.search.clone(),
-            explained: settings.explain.map(explained),
+            explained: settings.explain.filter(|_| !found.explanations.is_empty()).map(explained),
             initial_set,
             input_set,
             noise_set,

@@ -77,7 +77,7 @@ pub(crate) fn calibrate(
             .collect();
         let gauge = match &linear {
             Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
-            None => match outer_gauge(problem, &suites, Effort::Whole, 1.0, &grown)? {
+            None => match outer_gauge(problem, &suites, Effort::Whole, (1.0, 1), &grown)? {
                 OuterGauge::Factor(factor) => Ok(Some(factor)),
                 OuterGauge::None => Ok(None),
                 OuterGauge::Lost(factor) => {
