@@ -194,9 +194,9 @@ fn trust(
 ) -> Trust {
     let recordings = problem.recordings();
     match (calibration, optimality_gap) {
-        (Some(calibration), _) => Trust::of_calibration(recordings, calibration, is_proved),
+        (Some(calibration), _) => Trust::of_calibration(problem, calibration, is_proved),
         (None, Some(gap)) if gap > LARGEST_GAP => Trust::without_optimum(recordings, gap),
         _ if problem.setup().correction.is_some() => Trust::of_fitted_nominal(recordings),
-        _ => Trust::of_fit(recordings, tight),
+        _ => Trust::of_fit(problem, tight),
     }
 }
