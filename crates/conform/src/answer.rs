@@ -71,6 +71,19 @@ impl Answer {
         Ok(Self { model: Model::new(&problem, &found), problem, found })
     }
 
+    /// Adds radii to X0 and U, 3n, rad, rad/s and N m, and proves the wider sets: an allowance for
+    /// motions that were not recorded.
+    ///
+    /// # Errors
+    ///
+    /// As [`conform`](crate::conform()).
+    pub fn widened(self, allowance: Vec<f64>) -> Result<Self> {
+        let Self { problem, found, model } = self;
+        let found = found.widened(&problem, allowance)?;
+        let model = Model { fit: model.fit, ..Model::new(&problem, &found) }.sealed();
+        Ok(Self { model, problem, found })
+    }
+
     /// Returns whether the sets were proved to enclose every recording.
     #[must_use]
     pub fn holds(&self) -> bool {

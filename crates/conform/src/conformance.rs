@@ -7,16 +7,20 @@ use crate::claim::notion::claim;
 use crate::claim::remote::PointServer;
 use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
+use crate::data::settings::{NominalStart, check_allowance};
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain};
+use crate::next_motion::allowance::allowance as allowance_for;
 use crate::next_motion::any_run::AnyRun;
-use crate::next_motion::calibration::{Calibration, calibrate};
+use crate::next_motion::calibration::{Calibration, calibrate, not_smallest};
 use crate::next_motion::deciding_runs::DecidingRuns;
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
 use crate::nominal::input_error::InputError;
 use crate::plausibility::{NominalFit, Usefulness, Warning, warnings};
+use crate::program::program::Program;
 use crate::progress::Progress;
 use crate::search::found::{Found, SearchSummary};
 use crate::search::optimality::LARGEST_GAP;
@@ -53,6 +57,13 @@ pub struct Conformance {
     /// The sets without each of the motions they were found on; none for one motion, for a
     /// bisection, and for other notions than the hull.
     pub left_out: Vec<LeftOut>,
+    /// The radii that have to be added to X0 and U, 3n, so that the sets without each of the
+    /// motions enclose it; zero where they do. Radii of U are in proportion to the error of the
+    /// input, and radii of X0 to X0; they are 0 where the noise of the sensors limits X0. `None`
+    /// without such motions, if no radii suffice, and for a model that is not linear.
+    pub allowance_needed: Option<Vec<f64>>,
+    /// The radii that were added to the smallest X0 and U, 3n; empty if none were.
+    pub allowance: Vec<f64>,
     /// The runs that decide the sets.
     pub deciding_runs: DecidingRuns,
     /// The joints whose motion follows the order of the runs.
@@ -134,8 +145,19 @@ fn conform_claim(
         let (found, calibration) = calibrate(problem, progress, resume)?;
         (found, Some(calibration))
     };
+    judged(problem, found, calibration, Vec::new())
+}
+
+/// Proves sets that were found, and says what they say.
+fn judged(
+    problem: &Problem,
+    found: Found,
+    calibration: Option<Calibration>,
+    allowance: Vec<f64>,
+) -> Result<Conformance> {
     let Found { tube, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
+    let LeftOutMotions { each: left_out, missing } = left_out;
     let mut tight = found.touching;
     let mut radii = vec![0.0f64; 2 * problem.joints()];
     let verdict = Verdict::visiting(problem, &tube, |row| {
@@ -150,8 +172,15 @@ fn conform_claim(
     };
     let fit = NominalFit::new(problem)?;
     let input_error = InputError::of_problem(problem)?;
+    // Where motions differ, U differs like the input that the robot does not explain.
+    let starts = match problem.settings().nominal {
+        NominalStart::Own => vec![0.0; 2 * problem.joints()],
+        NominalStart::Mean => tube.sets.initial_set.radius.clone(),
+    };
+    let shape = [&starts[..], &input_error].concat();
     let warnings = warnings(problem, &tube.sets, &radii, &fit, &input_error, calibration.as_ref())?;
-    let is_smallest = calibration.is_none() && !problem.settings().notion.asks_points();
+    let is_as_found = calibration.is_none() && allowance.is_empty();
+    let is_smallest = is_as_found && !problem.settings().notion.asks_points();
     Ok(Conformance {
         sets: tube.sets.clone(),
         warnings,
@@ -162,19 +191,49 @@ fn conform_claim(
         optimality_gap,
         paper_cost,
         hull_volume,
-        trust: trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant),
+        trust: match allowance.is_empty() {
+            true => {
+                trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant)
+            }
+            false => Trust::with_allowance(problem.recordings()),
+        },
         verdict,
         deciding_runs: DecidingRuns::new(problem, &tight, is_smallest.then_some(cost))?,
         trends: trends(problem),
         calibration,
         left_out,
+        allowance_needed: missing.and_then(|missing| allowance_for(&missing, &shape)),
+        allowance,
         search,
         tight,
         explanations,
         input_error,
-        any_run: if problem.settings().calibrate.is_empty() { AnyRun::new(problem)? } else { None },
+        any_run: if is_as_found { AnyRun::new(problem)? } else { None },
         tube,
     })
+}
+
+impl Conformance {
+    /// Adds radii to X0 and U, 3n, and proves the wider sets. They are not the smallest.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`conform`].
+    ///
+    /// # Errors
+    ///
+    /// As [`conform`]; an allowance that is not 3n radii.
+    pub(crate) fn widened(self, problem: &Problem, allowance: Vec<f64>) -> Result<Self> {
+        check_allowance(&allowance, problem.joints())?;
+        let sets = self.sets.widened(&allowance);
+        let left_out = LeftOutMotions { each: self.left_out, missing: None };
+        let linear = problem.dynamics().linear_system();
+        let program = linear.map(|_| Program::of_problem(problem)).transpose()?;
+        let scale = program.as_ref().map(Program::scale);
+        let found = Found { left_out, search: self.search, ..not_smallest(problem, &sets, scale)? };
+        let allowance_needed = self.allowance_needed;
+        Ok(Self { allowance_needed, ..judged(problem, found, self.calibration, allowance)? })
+    }
 }
 
 /// Returns what may be expected of motions that were not recorded.

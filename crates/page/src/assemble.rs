@@ -105,6 +105,9 @@ fn sets_table(model: &Model) -> SetsTable {
     SetsTable { notion: notion.into(), joints: (0..n).map(row).collect() }
 }
 
+/// The name of the radii that were added to the sets.
+const ALLOWANCE: &str = "Allowance added to the smallest X0, then U [SI units]";
+
 fn facts(model: &Model) -> Vec<(String, String)> {
     let settings = &model.settings;
     let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
@@ -145,6 +148,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("Written by", model.tool.clone()),
     ]
     .into_iter()
+    .chain((!model.allowance.is_empty()).then(|| (ALLOWANCE, word(&model.allowance))))
     .map(|(name, value)| (name.to_string(), value))
     .collect()
 }

@@ -62,7 +62,8 @@ impl Cut {
         };
         let motions = index_names(paths, &raw);
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        let prepared = Prepared { logs: &logs, motions: &motions, from_start: false, simulated };
+        let prepared =
+            Prepared { logs: &logs, motions: &motions, parts: None, from_start: false, simulated };
         let windows = prepared.cut(horizon, usize::MAX)?;
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));

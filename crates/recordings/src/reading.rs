@@ -298,7 +298,13 @@ impl Reading<'_> {
             "" => format!("{name} is empty"),
             _ => format!("{name} is {}, not a finite number", quoted(text)),
         };
-        let remedy = "every value must be a number: cut the run before this line, or record again";
+        let remedy = match text {
+            "" if (n + 1..=2 * n).contains(&at) => {
+                "every value must be a number: cut the run before this line; if no velocity was \
+                 measured, delete the columns of qd, and `model` and `prepare` differentiate q"
+            }
+            _ => "every value must be a number: cut the run before this line, or record again",
+        };
         let defect = Defect::new(self.path, Some(line), problem, remedy).of_kind(DefectKind::Value);
         self.defects.push(defect.of_joint(joint));
     }
