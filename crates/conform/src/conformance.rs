@@ -1,5 +1,6 @@
 //! The whole of a conformance: from a problem to sets that were proved to enclose its recordings.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::claim::claim::Claim;
@@ -9,8 +10,12 @@ use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
 use crate::data::settings::{NominalStart, check_allowance};
 use crate::error::Result;
+<<<<<<< HEAD
 use crate::explain::explanation::{Explanation, explain};
 use crate::next_motion::allowance::allowance as allowance_for;
+=======
+use crate::explain::explanation::{Explanation, explain_some};
+>>>>>>> main
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::{Calibration, calibrate, not_smallest};
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -73,7 +78,8 @@ pub struct Conformance {
     /// The recorded values that touch the reachable set, the closest first; the linearised set
     /// where the model is not linear.
     pub tight: Vec<Witness>,
-    /// How close a motion of the model comes to each run, where the settings ask for it.
+    /// How close a motion of the model comes to each run, or to each that decides the sets, where
+    /// the settings ask for it.
     pub explanations: Vec<Explanation>,
     /// Implausible results, and the most likely cause.
     pub warnings: Vec<Warning>,
@@ -167,7 +173,12 @@ fn judged(
     })?;
     tight.sort_by(|a, b| b.excess.total_cmp(&a.excess));
     let explanations = match problem.settings().explain {
-        Some(_) => explain(problem, &tube.sets)?,
+        Some(_) => {
+            let deciding: BTreeSet<&str> = tight.iter().map(|witness| &*witness.run).collect();
+            let decides = |run| deciding.contains(&*problem.entry(run).file);
+            let all = problem.setup().explains_all;
+            explain_some(problem, &tube.sets, |run| all || decides(run))?
+        }
         None => Vec::new(),
     };
     let fit = NominalFit::new(problem)?;
@@ -246,9 +257,9 @@ fn trust(
 ) -> Trust {
     let recordings = problem.recordings();
     match (calibration, optimality_gap) {
-        (Some(calibration), _) => Trust::of_calibration(recordings, calibration, is_proved),
+        (Some(calibration), _) => Trust::of_calibration(problem, calibration, is_proved),
         (None, Some(gap)) if gap > LARGEST_GAP => Trust::without_optimum(recordings, gap),
         _ if problem.setup().correction.is_some() => Trust::of_fitted_nominal(recordings),
-        _ => Trust::of_fit(recordings, tight),
+        _ => Trust::of_fit(problem, tight),
     }
 }

@@ -125,9 +125,15 @@ impl Decided<'_> {
         findings.extend(unknown_motors(&robot, torque));
         let mut trial = Trial { robot: robot.clone(), ..trial.clone() };
         let (motions, from_start) = (motion_names(split), torque == Torque::Compensated);
+<<<<<<< HEAD
         let parts = split.parts();
         let parts = parts.as_ref();
         let recordings = Prepared { logs: &logs, motions: &motions, parts, from_start, simulated };
+=======
+        let origins = None;
+        let recordings =
+            Prepared { logs: &logs, motions: &motions, from_start, simulated, origins };
+>>>>>>> main
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
         let choices = &chooser.choices;

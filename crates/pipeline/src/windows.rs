@@ -25,6 +25,8 @@ pub(crate) struct Prepared<'a> {
     pub from_start: bool,
     /// Whether the recordings are simulated.
     pub simulated: bool,
+    /// The SHA-256 of the log of each, by its name, where they are kept.
+    pub origins: Option<&'a BTreeMap<String, String>>,
 }
 
 impl Prepared<'_> {
@@ -74,7 +76,9 @@ impl Prepared<'_> {
             let name = if self.from_start { &window.log.name } else { &window.suite };
             if is_wanted(name) {
                 let run = run(&window.log);
-                runs.push(name, Some(&window.suite), Some(&motion), run).simulated = self.simulated;
+                let entry = runs.push(name, Some(&window.suite), Some(&motion), run);
+                entry.simulated = self.simulated;
+                entry.origin = self.origins.and_then(|all| all.get(&window.motion).cloned());
             }
         }
         Ok(runs)

@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::fixture::Lab;
 use crate::identify::lab as pendulum_lab;
 use crate::output_schema::fits;
+use crate::provenance::names_what_it_is_of;
 use crate::robot_logs::{JOINT_STATE, Message, SECOND, State, bag, mcap_bytes};
 use crate::short::is_short;
 
@@ -32,6 +33,7 @@ fn logs_become_a_useful_model_that_takes_other_logs() {
         lab.run("model --robot pendulum.toml --data logs --torque motor --out arm --json").exits(0);
     let answer = json(&run.stdout);
     fits("model", &answer);
+    names_what_it_is_of(&answer, &json(&lab.read("arm/model.json")), None);
     assert_eq!((&answer["useful"], &answer["conformant"]), (&true.into(), &true.into()));
     // The description misses half of the mass, so that the robot is identified.
     let choice = |key: &str| {

@@ -59,26 +59,21 @@ impl Envelope {
     /// # Guarantee
     ///
     /// Outer: exact comparisons, no rounding.
-    pub(crate) fn include_bounds(&mut self, run: u32, lower: &[f64], upper: &[f64]) {
+    pub(crate) fn include_bounds<'a>(&mut self, run: u32, lower: &'a [f64], upper: &'a [f64]) {
         self.extend(upper.len());
-        extend_bounds(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new >= old);
-        extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new <= old);
+        let of_run = |values: &'a [f64]| values.iter().map(move |value| (*value, run));
+        extend_bounds(&mut self.upper, &mut self.upper_run, of_run(upper), |new, old| new >= old);
+        extend_bounds(&mut self.lower, &mut self.lower_run, of_run(lower), |new, old| new <= old);
     }
 
     /// Merges another envelope of the same states. Ties keep the run of the smaller number,
     /// whatever the order of merging.
     pub fn merge(&mut self, other: &Self) {
         self.extend(other.upper.len());
-        for i in 0..other.upper.len() {
-            let (run, old) = (other.upper_run[i], self.upper_run[i]);
-            if other.upper[i] > self.upper[i] || (other.upper[i] == self.upper[i] && run < old) {
-                (self.upper[i], self.upper_run[i]) = (other.upper[i], run);
-            }
-            let (run, old) = (other.lower_run[i], self.lower_run[i]);
-            if other.lower[i] < self.lower[i] || (other.lower[i] == self.lower[i] && run < old) {
-                (self.lower[i], self.lower_run[i]) = (other.lower[i], run);
-            }
-        }
+        let above = other.upper.iter().zip(&other.upper_run).map(|(value, run)| (*value, *run));
+        extend_bounds(&mut self.upper, &mut self.upper_run, above, |new, old| new >= old);
+        let below = other.lower.iter().zip(&other.lower_run).map(|(value, run)| (*value, *run));
+        extend_bounds(&mut self.lower, &mut self.lower_run, below, |new, old| new <= old);
     }
 
     /// Returns the highest value at sample k in state i.
@@ -149,17 +144,16 @@ impl Envelope {
     }
 }
 
-/// Moves bounds outward where `values` lie beyond them, and hands bounds that `values` reach to the
-/// run of the smaller number: 0 and -0 are equal, and a bound has the bits of its run. The pass has
-/// no branch, so that the compiler can use vector registers.
+/// Moves bounds outward where `values` with their runs lie beyond them, and hands bounds that
+/// `values` reach to the run of the smaller number: 0 and -0 are equal, and a bound has the bits of
+/// its run. The pass has no branch, so that the compiler can use vector registers.
 fn extend_bounds(
     bounds: &mut [f64],
     runs: &mut [u32],
-    values: &[f64],
-    run: u32,
+    values: impl Iterator<Item = (f64, u32)>,
     reaches: impl Fn(f64, f64) -> bool,
 ) {
-    for ((bound, owner), &value) in bounds.iter_mut().zip(runs.iter_mut()).zip(values) {
+    for ((bound, owner), (value, run)) in bounds.iter_mut().zip(runs.iter_mut()).zip(values) {
         let takes = reaches(value, *bound) & ((value != *bound) | (run < *owner));
         *bound = if takes { value } else { *bound };
         *owner = if takes { run } else { *owner };

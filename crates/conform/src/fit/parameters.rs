@@ -279,8 +279,16 @@ impl<'a> Parameters<'a> {
         let robot = Robot::from_description(&description)?;
         let dynamics = Dynamics::new(&robot, settings)?;
         let (settings, nominal_starts) = (settings.clone(), nominal_starts.clone());
-        let correction = Some(correction);
-        Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition: None })
+        let (explains_all, correction) = (self.setup.explains_all, Some(correction));
+        Ok(Setup {
+            robot,
+            dynamics,
+            settings,
+            explains_all,
+            nominal_starts,
+            correction,
+            condition: None,
+        })
     }
 
     /// The quadratic and cubic viscous friction that is missing at the order of the model, about

@@ -37,6 +37,18 @@ pub struct Calibration {
     pub factor: f64,
     /// Whether only U was scaled, because the noise of the sensors limits X0.
     pub input_only: bool,
+    /// Number of models in the folder of the model file, with this one, that were calibrated by
+    /// some of the same recordings. The bound counts them, because the best of several models is
+    /// not one that was chosen beforehand.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub candidates: usize,
+}
+
+impl Calibration {
+    /// Returns the motions that were held out.
+    pub(crate) fn held_out(&self) -> impl Iterator<Item = &str> {
+        self.gauges.iter().map(|gauge| gauge.motion.as_str())
+    }
 }
 
 /// The gauge of a motion.
@@ -48,6 +60,14 @@ pub struct Gauge {
     /// The factor, at least 1, by which the radii must grow about their centres so that the sets
     /// enclose the motion.
     pub gauge: f64,
+}
+
+fn one() -> usize {
+    1
+}
+
+fn is_one(count: &usize) -> bool {
+    *count == 1
 }
 
 /// Finds the smallest sets for the motions that the settings do not hold out, and scales their
@@ -78,7 +98,7 @@ pub(crate) fn calibrate(
             .collect();
         let gauge = match &linear {
             Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
-            None => match outer_gauge(problem, &suites, Effort::Whole, 1.0, &grown)? {
+            None => match outer_gauge(problem, &suites, Effort::Whole, (1.0, 1), &grown)? {
                 OuterGauge::Factor(factor) => Ok(Some(factor)),
                 OuterGauge::None => Ok(None),
                 OuterGauge::Lost(factor) => {
@@ -97,7 +117,8 @@ pub(crate) fn calibrate(
     let found = Found { search, left_out, ..not_smallest(problem, &grown(factor), scale)? };
     let all = motions.distinct().into_iter();
     let others = all.filter(|motion| !held_out.contains(motion)).map(String::from).collect();
-    let calibration = Calibration { fitted: others, gauges, factor, input_only };
+    let candidates = 1;
+    let calibration = Calibration { fitted: others, gauges, factor, input_only, candidates };
     Ok((found, calibration))
 }
 

@@ -5,7 +5,7 @@ use crate::data::settings::NominalStart;
 use crate::error::Result;
 use crate::next_motion::allowance::Missing;
 use crate::next_motion::motions::Motions;
-use crate::next_motion::outer_gauge::{OuterGauge, outer_gauge};
+use crate::next_motion::outer_gauge::{COARSE, OuterGauge, outer_gauge};
 use crate::next_motion::without_motion::LeftOut;
 use crate::program::program::{CLOSE, Program, RowIndex};
 use crate::progress::Progress;
@@ -166,17 +166,20 @@ impl Without<'_> {
         guess: f64,
         input_only: bool,
     ) -> Result<(Option<usize>, Option<f64>)> {
-        let own = self.problem.cases()?.par_iter().filter(|case| self.suites[case.suite]);
+        let problem = self.problem;
+        let own = problem.cases()?.par_iter().filter(|case| self.suites[case.suite]);
         let sum = |a: Option<usize>, b: Option<usize>| Ok(a.zip(b).map(|(a, b)| a + b));
-        let outside = own.map(|case| rows_outside(self.problem, case, sets));
+        let outside = own.map(|case| rows_outside(problem, case, sets));
         let outside = outside.try_reduce(|| Some(0), sum)?;
         let grown = |factor: f64| sets.grown(factor, input_only);
         let gauge = match outside {
             Some(0) => Some(1.0),
-            _ => match outer_gauge(self.problem, &self.suites, Effort::Quick, guess, &grown)? {
-                OuterGauge::Factor(factor) => Some(factor),
-                OuterGauge::None | OuterGauge::Lost(_) => None,
-            },
+            _ => {
+                match outer_gauge(problem, &self.suites, Effort::Quick, (guess, COARSE), &grown)? {
+                    OuterGauge::Factor(factor) => Some(factor),
+                    OuterGauge::None | OuterGauge::Lost(_) => None,
+                }
+            }
         };
         Ok((outside, gauge))
     }

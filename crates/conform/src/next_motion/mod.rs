@@ -21,5 +21,5 @@ pub use deciding_runs::{DecidingRun, DecidingRuns};
 pub use growth::Growth;
 pub use rates::{Rate, Rates};
 pub use trends::Trend;
-pub use trust::{CONFIDENCE, Trust};
+pub use trust::{CONFIDENCE, Trust, TrustKind};
 pub use without_motion::LeftOut;
