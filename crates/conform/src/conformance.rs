@@ -8,14 +8,10 @@ use crate::claim::notion::claim;
 use crate::claim::remote::PointServer;
 use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
-use crate::data::settings::{NominalStart, check_allowance};
+use crate::data::settings::check_allowance;
 use crate::error::Result;
-<<<<<<< HEAD
-use crate::explain::explanation::{Explanation, explain};
-use crate::next_motion::allowance::allowance as allowance_for;
-=======
 use crate::explain::explanation::{Explanation, explain_some};
->>>>>>> main
+use crate::next_motion::allowance::allowance_for;
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::{Calibration, calibrate, not_smallest};
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -172,24 +168,16 @@ fn judged(
         tight.extend(decide.map(|edge| Witness::new(problem, row, edge)));
     })?;
     tight.sort_by(|a, b| b.excess.total_cmp(&a.excess));
-    let explanations = match problem.settings().explain {
-        Some(_) => {
-            let deciding: BTreeSet<&str> = tight.iter().map(|witness| &*witness.run).collect();
-            let decides = |run| deciding.contains(&*problem.entry(run).file);
-            let all = problem.setup().explains_all;
-            explain_some(problem, &tube.sets, |run| all || decides(run))?
-        }
-        None => Vec::new(),
-    };
+    let explanations = explanations(problem, &tube.sets, &tight)?;
     let fit = NominalFit::new(problem)?;
     let input_error = InputError::of_problem(problem)?;
-    // Where motions differ, U differs like the input that the robot does not explain.
-    let starts = match problem.settings().nominal {
-        NominalStart::Own => vec![0.0; 2 * problem.joints()],
-        NominalStart::Mean => tube.sets.initial_set.radius.clone(),
-    };
-    let shape = [&starts[..], &input_error].concat();
+    let allowance_needed =
+        missing.and_then(|missing| allowance_for(problem, &tube.sets, &input_error, &missing));
     let warnings = warnings(problem, &tube.sets, &radii, &fit, &input_error, calibration.as_ref())?;
+    let trust = match allowance.is_empty() {
+        true => trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant),
+        false => Trust::with_allowance(problem.recordings()),
+    };
     let is_as_found = calibration.is_none() && allowance.is_empty();
     let is_smallest = is_as_found && !problem.settings().notion.asks_points();
     Ok(Conformance {
@@ -202,18 +190,13 @@ fn judged(
         optimality_gap,
         paper_cost,
         hull_volume,
-        trust: match allowance.is_empty() {
-            true => {
-                trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant)
-            }
-            false => Trust::with_allowance(problem.recordings()),
-        },
+        trust,
         verdict,
         deciding_runs: DecidingRuns::new(problem, &tight, is_smallest.then_some(cost))?,
         trends: trends(problem),
         calibration,
         left_out,
-        allowance_needed: missing.and_then(|missing| allowance_for(&missing, &shape)),
+        allowance_needed,
         allowance,
         search,
         tight,
@@ -222,6 +205,21 @@ fn judged(
         any_run: if is_as_found { AnyRun::new(problem)? } else { None },
         tube,
     })
+}
+
+/// Explains the runs that decide the sets, or all, if the settings ask for it.
+fn explanations(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    tight: &[Witness],
+) -> Result<Vec<Explanation>> {
+    if problem.settings().explain.is_none() {
+        return Ok(Vec::new());
+    }
+    let deciding: BTreeSet<&str> = tight.iter().map(|witness| &*witness.run).collect();
+    let decides = |run| deciding.contains(&*problem.entry(run).file);
+    let all = problem.setup().explains_all;
+    explain_some(problem, sets, |run| all || decides(run))
 }
 
 impl Conformance {

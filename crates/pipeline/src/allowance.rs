@@ -21,8 +21,8 @@ pub(crate) struct Widened {
 }
 
 impl Widened {
-    /// Finds the sets for windows of `horizon` \[s\], at most `most` of them, and adds an allowance:
-    /// the one that is given, or what each motion that is left out in turn asks for.
+    /// Finds the sets for windows of `horizon` \[s\], at most `most` of them, and adds an
+    /// allowance: the one that is given, or what each motion that is left out in turn asks for.
     ///
     /// # Errors
     ///
@@ -72,7 +72,7 @@ fn asked(answer: &Answer) -> (Vec<f64>, String) {
     });
     let part = format!("{:.1} %", 100.0 * outside as f64 / rows.max(1) as f64);
     match &answer.found.allowance_needed {
-        _ if all.len() < 2 => (Vec::new(), "there is no motion to leave out".into()),
+        _ if all.len() < 2 => (Vec::new(), "there is a single motion or part".into()),
         None => {
             (Vec::new(), format!("no allowance encloses {part} of the rows of motions left out"))
         }

@@ -1,4 +1,3 @@
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use reachtube_conform::settings::{Equations, NominalStart};
@@ -124,16 +123,16 @@ impl Decided<'_> {
         let mut findings = unless_accepted(findings, given);
         findings.extend(unknown_motors(&robot, torque));
         let mut trial = Trial { robot: robot.clone(), ..trial.clone() };
-        let (motions, from_start) = (motion_names(split), torque == Torque::Compensated);
-<<<<<<< HEAD
+        let (motions, from_start) = (split.motion_names(), torque == Torque::Compensated);
         let parts = split.parts();
-        let parts = parts.as_ref();
-        let recordings = Prepared { logs: &logs, motions: &motions, parts, from_start, simulated };
-=======
-        let origins = None;
-        let recordings =
-            Prepared { logs: &logs, motions: &motions, from_start, simulated, origins };
->>>>>>> main
+        let recordings = Prepared {
+            logs: &logs,
+            motions: &motions,
+            parts: parts.as_ref(),
+            from_start,
+            simulated,
+            origins: None,
+        };
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
         let choices = &chooser.choices;
@@ -365,11 +364,6 @@ fn preparation(choices: &Choices, torque: Torque) -> Preparation {
         columns: choices.columns.clone(),
         log: choices.log.clone(),
     }
-}
-
-fn motion_names(split: &Split) -> BTreeMap<String, String> {
-    let all = split.kept.iter().chain(&split.held_out);
-    all.map(|recording| (recording.log.name.clone(), recording.motion.clone())).collect()
 }
 
 fn reason_of_horizon(

@@ -93,6 +93,12 @@ impl Split {
         kept.is_disjoint(&held_out).then_some(held_out.len())
     }
 
+    /// Returns the motion of each recording by its name.
+    pub(crate) fn motion_names(&self) -> BTreeMap<String, String> {
+        let all = self.kept.iter().chain(&self.held_out);
+        all.map(|recording| (recording.log.name.clone(), recording.motion.clone())).collect()
+    }
+
     /// Returns the part of its motion that each recording belongs to that is not held out, if
     /// recordings are held out in place of motions.
     pub(crate) fn parts(&self) -> Option<BTreeMap<String, String>> {

@@ -207,15 +207,10 @@ impl Evidence<'_> {
         let recordings = Prepared {
             logs: &nominal.logs,
             motions: &none,
-<<<<<<< HEAD
             parts: None,
             from_start: false,
             simulated: false,
-=======
-            from_start: false,
-            simulated: false,
             origins: None,
->>>>>>> main
         };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };

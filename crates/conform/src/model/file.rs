@@ -118,8 +118,7 @@ pub struct Model {
     /// How the sets were scaled, where motions were held out for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
-    /// The radii that were added to the smallest X0 and U, 3n, rad, rad/s and N m, for motions that
-    /// were not recorded; none where the sets are the smallest, or calibrated.
+    /// The radii that were added to the smallest X0 and U, 3n, in SI units; none if none were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub allowance: Vec<f64>,
     /// The sets without each of the motions they were found on, of a linear model.
@@ -317,9 +316,6 @@ impl Model {
         Self { fit: Some(record), ..self }.sealed()
     }
 
-<<<<<<< HEAD
-    pub(crate) fn sealed(self) -> Self {
-=======
     /// Returns the SHA-256 of the listed recordings that a fit has seen: recordings of motions that
     /// were not held out.
     fn fitted_runs(&self) -> Vec<String> {
@@ -330,7 +326,6 @@ impl Model {
     }
 
     pub(super) fn sealed(self) -> Self {
->>>>>>> main
         Self { sha256: self.digest(), ..self }
     }
 

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::data::problem::Problem;
+use crate::data::settings::NominalStart;
 use crate::program::program::{Program, dot};
 use crate::sets::UncertaintySets;
 
@@ -25,10 +27,21 @@ impl Program<'_> {
     }
 }
 
-/// Returns the least multiple of `shape`, 3n radii of X0 and U, that covers all rows that are
-/// missing; `None` if no multiple does.
-pub(crate) fn allowance(missing: &Missing, shape: &[f64]) -> Option<Vec<f64>> {
-    let needed = |(excess, gains): &(f64, Vec<f64>)| excess / dot(gains, shape);
+/// Returns the radii that have to be added to X0 and U, 3n, so that they cover all rows that are
+/// missing; `None` if none do. Where motions differ, U differs like the input that the robot does
+/// not explain, n; X0 grows in proportion to its radii, unless the noise of the sensors limits it.
+pub(crate) fn allowance_for(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    input_error: &[f64],
+    missing: &Missing,
+) -> Option<Vec<f64>> {
+    let starts = match problem.settings().nominal {
+        NominalStart::Own => vec![0.0; sets.initial_set.dimension()],
+        NominalStart::Mean => sets.initial_set.radius.clone(),
+    };
+    let shape = [&starts[..], input_error].concat();
+    let needed = |(excess, gains): &(f64, Vec<f64>)| excess / dot(gains, &shape);
     let factor = missing.values().map(needed).fold(0.0, f64::max);
     factor.is_finite().then(|| shape.iter().map(|radius| factor * radius).collect())
 }

@@ -27,8 +27,8 @@ struct Without<'a> {
 pub(crate) struct LeftOutMotions {
     /// Each motion.
     pub each: Vec<LeftOut>,
-    /// The rows of motions that lie beyond the sets of the others. `None` without motions to leave
-    /// out, where a program could not be solved, and for a model that is not linear.
+    /// The rows of motions that lie beyond the sets of the others. `None` for a single motion, for
+    /// a program that could not be solved, and for a model that is not linear.
     pub missing: Option<Missing>,
 }
 
