@@ -94,9 +94,12 @@ impl Built {
             Some(why) => why.clone(),
             None => {
                 let (rows, outside, windows) = (held_out.rows, held_out.outside, held_out.windows);
-                let part = 100.0 * outside as f64 / rows.max(1) as f64;
+                let part = match 100.0 * outside as f64 / rows.max(1) as f64 {
+                    part if outside > 0 && part < 0.1 => "less than 0.1 %".into(),
+                    part => format!("{part:.1} %"),
+                };
                 let what = self.unit();
-                format!("{outside} of {rows} rows outside ({part:.1} %), of {windows} {what}")
+                format!("{outside} of {rows} rows outside ({part}), of {windows} {what}")
             }
         }
     }
