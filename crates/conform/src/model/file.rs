@@ -118,6 +118,9 @@ pub struct Model {
     /// How the sets were scaled, where motions were held out for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// The radii that were added to the smallest X0 and U, 3n, in SI units; none if none were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowance: Vec<f64>,
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
@@ -214,6 +217,7 @@ impl Model {
             proof: found.verdict.clone(),
             trust: found.trust.clone(),
             calibration: found.calibration.clone(),
+            allowance: found.allowance.clone(),
             left_out: found.left_out.clone(),
             deciding_runs: found.deciding_runs.clone(),
             trends: found.trends.clone(),
