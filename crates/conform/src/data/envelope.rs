@@ -76,6 +76,37 @@ impl Envelope {
         extend_bounds(&mut self.lower, &mut self.lower_run, below, |new, old| new <= old);
     }
 
+    /// Returns the envelope of `others`, where this one is the envelope of these and of `left_out`.
+    /// Only bounds that `left_out` reaches are looked for anew.
+    pub(crate) fn without(&self, left_out: &[&Self], others: &[&Self]) -> Self {
+        let mut rest = Self::new(self.dimension);
+        let entries = others.iter().map(|other| other.upper.len()).max().unwrap_or(0);
+        rest.extend(entries);
+        rest.upper.copy_from_slice(&self.upper[..entries]);
+        rest.lower.copy_from_slice(&self.lower[..entries]);
+        rest.upper_run.copy_from_slice(&self.upper_run[..entries]);
+        rest.lower_run.copy_from_slice(&self.lower_run[..entries]);
+        for at in 0..entries {
+            let reaches = |bounds: fn(&Self) -> &[f64]| {
+                left_out.iter().any(|other| bounds(other).get(at) == Some(&bounds(self)[at]))
+            };
+            let having = others.iter().filter(|other| at < other.upper.len());
+            if reaches(|of| &of.upper) {
+                let bounds = having.clone().map(|of| (of.upper[at], of.upper_run[at]));
+                let (bound, run) = (&mut rest.upper[at..=at], &mut rest.upper_run[at..=at]);
+                (bound[0], run[0]) = (f64::NEG_INFINITY, u32::MAX);
+                bounds.for_each(|one| extend_bounds(bound, run, [one].into_iter(), |x, y| x >= y));
+            }
+            if reaches(|of| &of.lower) {
+                let bounds = having.map(|of| (of.lower[at], of.lower_run[at]));
+                let (bound, run) = (&mut rest.lower[at..=at], &mut rest.lower_run[at..=at]);
+                (bound[0], run[0]) = (f64::INFINITY, u32::MAX);
+                bounds.for_each(|one| extend_bounds(bound, run, [one].into_iter(), |x, y| x <= y));
+            }
+        }
+        rest
+    }
+
     /// Returns the highest value at sample k in state i.
     pub fn upper(&self, k: usize, i: usize) -> f64 {
         self.upper[k * self.dimension + i]
@@ -193,6 +224,14 @@ mod tests {
             b.merge(&first);
             prop_assert_eq!(&a, &envelope_of(&runs));
             prop_assert_eq!(&a, &b);
+            let singles: Vec<Envelope> =
+                runs.iter().map(|run| envelope_of(std::slice::from_ref(run))).collect();
+            let (out, others): (Vec<_>, Vec<_>) =
+                singles.iter().enumerate().partition(|(at, _)| *at < cut);
+            let [out, others] = [out, others].map(|part: Vec<(usize, &Envelope)>| -> Vec<_> {
+                part.into_iter().map(|(_, one)| one).collect()
+            });
+            prop_assert_eq!(a.without(&out, &others), envelope_of(&runs[cut.min(runs.len())..]));
             let shuffled = order.iter().filter_map(|&run| runs.get(run)).cloned();
             prop_assert_eq!(a, envelope_of(&shuffled.collect::<Vec<_>>()));
         }

@@ -60,22 +60,23 @@ pub(crate) fn leave_each_out(
         (motion, Without { problem, suites })
     });
     program.keep_close(&mut rows, sets, CLOSE);
-    // Which motions need a program, in their order, so that the answer does not depend on cores.
+    // Which motions need a program, in their order, so that the answer does not depend on cores. A
+    // row of one suite touches the sets only if the row of all suites does.
     let mut programs = 0;
+    let deciding = program.deciding(sets);
     let numbered = all.map(|(motion, without)| {
-        let decides = without.rows(program, |suite| without.suites[suite])?.touches(sets);
+        let own = without.rows(program, |suite| without.suites[suite])?;
+        let decides = !own.tight_among(deciding.iter().copied(), sets).is_empty();
         programs += usize::from(decides);
         Ok((motion, without, decides.then_some(programs)))
     });
     let numbered: Vec<_> = numbered.collect::<Result<_>>()?;
     let leave_out = |(motion, without, number): &(&str, Without, Option<usize>)| {
         progress.go_on()?;
-        let own = without.own(program)?;
-        let count = own.iter().map(|own| own.rows() / 2).sum();
         let unknown = LeftOut {
             motion: (*motion).into(),
             cost: None,
-            rows: count,
+            rows: without.row_count()?,
             outside: None,
             gauge: None,
         };
@@ -87,7 +88,7 @@ pub(crate) fn leave_each_out(
             }
             Some(number) if number > MOST_PROGRAMS => Ok((unknown, Some(Missing::new()))),
             Some(_) => {
-                let others = without.rows(program, |suite| !without.suites[suite])?;
+                let (own, others) = (without.own(program)?, without.others(program)?);
                 without.compare(&others, &rows, &own, unknown)
             }
         }
@@ -122,6 +123,33 @@ impl Without<'_> {
                 program.with_blocks(|block| of(cases[block].suite))
             }
         })
+    }
+
+    /// Returns the program of the other motions; `program` has all motions.
+    fn others<'p>(&self, program: &Program<'p>) -> Result<Program<'p>> {
+        match self.problem.dynamics().linear_system() {
+            Some(_) => {
+                let deviations = self.problem.deviations()?;
+                Ok(program.with_suites(deviations, |suite| !self.suites[suite]))
+            }
+            None => self.rows(program, |suite| !self.suites[suite]),
+        }
+    }
+
+    /// Returns the number of rows of the motion, both sides together.
+    fn row_count(&self) -> Result<usize> {
+        let problem = self.problem;
+        let samples: usize = match problem.dynamics().linear_system() {
+            Some(_) => {
+                let own = problem.deviations()?.iter().filter(|d| self.suites[d.suite]);
+                own.map(|d| d.envelope.len()).sum()
+            }
+            None => {
+                let own = problem.cases()?.iter().filter(|case| self.suites[case.suite]);
+                own.map(|case| case.measured.len()).sum()
+            }
+        };
+        Ok(samples * problem.settings().states.rows(problem.shape().states))
     }
 
     /// Returns the program of each of the motion's suites.

@@ -31,8 +31,9 @@ pub(super) enum OuterGauge {
 pub(super) const COARSE: i32 = FIRST_STEP;
 
 /// Returns the gauge of the suites that are marked by the computed outer sets: a power of [`STEP`]
-/// that suffices, of which the power that is `finest` lower does not. It is assumed that larger sets have larger outer sets, and that sets
-/// larger than one whose reachable set is lost lose theirs too. The search begins at `guess`.
+/// that suffices, of which the power that is `finest` lower does not. It is assumed that larger
+/// sets have larger outer sets, and that sets larger than one whose reachable set is lost lose
+/// theirs too. The search begins at `guess`.
 pub(super) fn outer_gauge(
     problem: &Problem,
     suites: &[bool],

@@ -27,7 +27,7 @@ pub(crate) struct Transition {
 }
 
 impl Transition {
-    /// Allocates the solution of a system of so many states and inputs.
+    /// Allocates the solution of a system with `states` states and `inputs` inputs.
     pub(crate) fn new(states: usize, inputs: usize) -> Self {
         let square = || vec![0.0; states * states];
         let (gamma, driven) = (vec![0.0; states * inputs], vec![0.0; states * inputs]);
@@ -72,7 +72,7 @@ fn set_identity(square: &mut [f64], n: usize) {
     square.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
 }
 
-/// Sets `out` to the product of two matrices, row-major; the second one has so many columns.
+/// Sets `out` to the product of two matrices, row-major; `right` has `columns` columns.
 fn product(left: &[f64], right: &[f64], columns: usize, out: &mut [f64]) {
     let inner = right.len() / columns;
     out.fill(0.0);

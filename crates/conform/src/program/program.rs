@@ -358,13 +358,7 @@ impl<'a> Program<'a> {
     /// Returns the rows that touch the hull of the sets' reach, within 1e-6 of its radius.
     #[must_use]
     pub(crate) fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
-        let unknowns = self.unknowns(sets);
-        let touches = |index: &RowIndex| {
-            let (b, k, i, _) = *index;
-            let radius = dot(self.row(b, k, i).1, &unknowns.radius) + unknowns.free_noise[i];
-            self.excess(*index, &unknowns) >= -TIGHT * radius
-        };
-        self.indices(1).filter(touches).collect()
+        self.tight_among(self.indices(1), sets)
     }
 
     /// Keeps the rows that come within `part` of the largest |d| of the sets' reach.
@@ -384,7 +378,7 @@ impl<'a> Program<'a> {
 pub(crate) struct Unknowns {
     pub(super) centre: Vec<f64>,
     pub(super) radius: Vec<f64>,
-    free_noise: Vec<f64>,
+    pub(super) free_noise: Vec<f64>,
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -49,7 +49,7 @@ pub(super) struct StateSensitivities {
 }
 
 impl StateSensitivities {
-    /// Begins at the first of so many samples.
+    /// Begins at the first of `samples` samples.
     pub(super) fn new(shape: Shape, samples: usize, disturbance: Disturbance) -> Self {
         let Shape { states, inputs } = shape;
         let blocks = samples.div_ceil(SIDE_BY_SIDE);
