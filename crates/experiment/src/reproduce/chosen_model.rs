@@ -16,7 +16,7 @@ use crate::random::{SplitMix64, uniform};
 pub(super) const HELD_OUT: usize = 4;
 
 /// Motions that the sets are found on.
-const OTHERS: usize = 8;
+const OTHERS: usize = 4;
 
 /// Number of models of which the best is chosen.
 const CANDIDATES: usize = 10;
