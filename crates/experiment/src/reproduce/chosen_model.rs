@@ -24,7 +24,7 @@ const CANDIDATES: usize = 10;
 /// Largest factor, and reciprocal of the smallest, of the candidates' viscous friction.
 const SPREAD: f64 = 1.5;
 
-/// Weight of the pull of the fits: small, as that of an identification by least squares.
+/// Weight of the pull of the fits: small, as if the robot was identified by least squares.
 const PULL: f64 = 0.01;
 
 /// How a model was chosen.
