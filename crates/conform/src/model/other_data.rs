@@ -6,8 +6,8 @@ use crate::data::problem::Problem;
 use crate::model::file::Model;
 use crate::model::records::{DataRecord, RunRecord, SuiteRecord};
 
-/// What differs between the recordings of a check and the model's, if they are meant to be the same:
-/// they share a recording, or a suite of one name has recordings of the same names.
+/// What differs between the recordings of a check and the model's, if they are meant to be the
+/// same: they share a recording, or a suite of one name has recordings of the same names.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OtherData {
     /// Recordings of the model that the check does not have.
@@ -36,8 +36,8 @@ pub(crate) struct Replaced {
 
 impl Model {
     /// Compares the recordings of a problem with the recordings that the model lists, in the suites
-    /// that both have. Returns `None` if nothing differs, if they are other recordings altogether, or if
-    /// either side does not list them.
+    /// that both have. Returns `None` if nothing differs, if they are other recordings altogether,
+    /// or if either side does not list them.
     pub(crate) fn other_data(&self, problem: &Problem, data: &DataRecord) -> Option<OtherData> {
         if !self.data.are_listed() || !data.are_listed() {
             return None;
