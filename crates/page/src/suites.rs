@@ -260,7 +260,7 @@ fn trace(
     })
 }
 
-/// Returns the mean of each of `count` columns of row-major values; nothing where there are none.
+/// Returns the mean of each of `count` columns of row-major values; an empty list for no rows.
 fn means(values: &[f64], count: usize) -> Vec<f64> {
     let rows = values.len() / count;
     if rows == 0 {

@@ -142,7 +142,8 @@ fn script(case: &ExportCase, form: InputForm, header: &str) -> String {
         _ => "",
     };
     format!(
-        "% Runs CORA (2024 to 2026), writes cora_bounds.csv, and compares it with our bounds.csv.\n{header}\
+        "% Runs CORA (2024 to 2026), writes cora_bounds.csv, and compares it with bounds.csv.\n\
+         {header}\
          data = cora_data();\n{system}\n\
          params.tFinal = data.horizon;\n\
          params.R0 = zonotope(data.x_start + data.X0_centre, diag(data.X0_radius));\n\
@@ -155,7 +156,8 @@ fn script(case: &ExportCase, form: InputForm, header: &str) -> String {
          t(k, 1) = R(1).timePoint.time{{k}};\n  \
          lower(k, :) = infimum(box)';\n  upper(k, :) = supremum(box)';\nend\n{nominal}\
          file = fopen('cora_bounds.csv', 'w');\nfprintf(file, 't');\n\
-         head = [strcat(names, '_lower'), strcat(names, '_upper')];\nfprintf(file, ',%s', head{{:}});\n\
+         head = [strcat(names, '_lower'), strcat(names, '_upper')];\n\
+         fprintf(file, ',%s', head{{:}});\n\
          fprintf(file, '\\n');\nfclose(file);\n\
          dlmwrite('cora_bounds.csv', [t, lower, upper], '-append', 'precision', 17);\n\
          [outside, ratio] = cora_compare(lower, upper);\n\

@@ -56,7 +56,8 @@ fn model(case: &ExportCase, tool: Tool, form: InputForm, lines: &[String]) -> St
 fn command(case: &ExportCase) -> String {
     format!(
         "#\n# XSpeed reads its times and variables from the command line only:\n\
-         # xspeed -m xspeed.xml -c xspeed.cfg --time-horizon {} --time-step {} -v q1,qd1 -o q1.txt\n\
+         # xspeed -m xspeed.xml -c xspeed.cfg --time-horizon {} --time-step {} -v q1,qd1 \
+         -o q1.txt\n\
          # Model-Translator.jar of XSpeed must be in this folder, and java installed.\n",
         number(case.horizon()),
         number(case.step()),

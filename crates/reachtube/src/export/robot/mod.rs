@@ -2,8 +2,9 @@
 //!
 //! [`mjcf`] is for MuJoCo and [`urdf`] for everything else. Both have the robot's inverse dynamics.
 //! Their friction is one viscous coefficient, the best line over the recorded velocities, and one
-//! Coulomb magnitude at no load; MuJoCo has cubic friction exactly. Links that cannot exist, as links from base parameters, are
-//! replaced by bodies with the same torques, or refused where none were found.
+//! Coulomb magnitude at no load; MuJoCo has cubic friction exactly. Links that cannot exist, as
+//! links from base parameters, are replaced by bodies with the same torques, or refused where none
+//! were found.
 
 mod attributes;
 mod bodies;
@@ -25,8 +26,8 @@ use crate::export::draws::Draws;
 /// Number of states at which [`check_torques`] has torques.
 const CHECK_STATES: usize = 1000;
 
-/// Returns `robot.xml` for MuJoCo and `check_torques.csv`; and `robot_linear.xml` for readers that
-/// know no polynomial damping, where the robot needs one.
+/// Returns `robot.xml` for MuJoCo and `check_torques.csv`; where damping is a polynomial, also
+/// `robot_linear.xml` with lines, since Drake and Pinocchio read one number per joint.
 ///
 /// # Errors
 ///
