@@ -152,8 +152,9 @@ impl<const N: usize> From<f64> for Lanes<N> {
 impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
     #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+    fn neg(mut self) -> Self {
+        self.0.iter_mut().for_each(|x| *x = -*x);
+        self
     }
 }
 
@@ -170,8 +171,8 @@ macro_rules! lane_by_lane {
         impl<const N: usize> $OpAssign for Lanes<N> {
             #[inline(always)]
             fn $op_assign(&mut self, rhs: Self) {
-                for (x, y) in self.0.iter_mut().zip(rhs.0) {
-                    x.$op_assign(y);
+                for (x, y) in self.0.iter_mut().zip(&rhs.0) {
+                    x.$op_assign(*y);
                 }
             }
         }
@@ -191,6 +192,7 @@ impl<const N: usize> Zero for Lanes<N> {
     }
 
     /// Returns whether every lane is 0.
+    #[inline(always)]
     fn is_zero(&self) -> bool {
         self.0.iter().all(|x| *x == 0.0)
     }
