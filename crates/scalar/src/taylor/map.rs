@@ -34,8 +34,6 @@ pub struct PolynomialMap<C = f64> {
     nodes: Vec<Node>,
     /// One group for each [`GROUP`] consecutive components.
     groups: Vec<MonomialGroup<C>>,
-    /// Number of non-constant terms of all components together.
-    term_count: usize,
 }
 
 /// Number of components that are summed together. Neighbouring components mostly have the same
@@ -104,7 +102,6 @@ impl<C: Scalar> PolynomialMap<C> {
             constants,
             nodes: vec![],
             groups,
-            term_count: 0,
         };
         map.fill(packing, monomials);
         map
@@ -126,7 +123,6 @@ impl<C: Scalar> PolynomialMap<C> {
             let power = starts[i] + packing.exponent(m, i) - 1;
             self.nodes.push(Node { parent, power });
             let number = self.nodes.len() as u32;
-            self.term_count += terms.len();
             for (component, c) in terms {
                 self.groups[component as usize / GROUP].push(number, component as usize % GROUP, c);
             }
@@ -137,11 +133,6 @@ impl<C: Scalar> PolynomialMap<C> {
     /// Returns the number of components m.
     pub fn components(&self) -> usize {
         self.constants.len()
-    }
-
-    /// Returns the number of non-constant terms of all components together.
-    pub fn term_count(&self) -> usize {
-        self.term_count
     }
 
     /// Returns scratch memory for evaluation over T.
