@@ -58,10 +58,6 @@ impl Robot {
     }
 
     /// Runs Newton-Euler for the motion [sin q, cos q, q̇, q̈] under a gravity load.
-    ///
-    /// As a function of its own it takes 6 % less over `f64`: the compiler knows that the arguments
-    /// do not overlap.
-    #[inline(never)]
     pub(crate) fn newton_euler<S: Scalar>(
         &self,
         motion: [&[S]; 4],

@@ -3,9 +3,6 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::interval::closed::Interval;
-use crate::lanes::Lanes;
-
 /// A computation that a scalar may run with other instructions than the rest of the program.
 pub trait Kernel {
     /// The result.
@@ -52,14 +49,10 @@ pub trait Dispatch {
 
 impl Dispatch for f64 {}
 
-impl Dispatch for Interval {}
-
-/// On x86-64, kernels over lanes take AVX2 where the processor has it.
-impl<const N: usize> Dispatch for Lanes<N> {
-    #[inline(always)]
-    fn dispatch<K: Kernel>(kernel: K) -> K::Output {
-        Arch::new().dispatch(Vectorised(kernel))
-    }
+/// Runs a kernel with AVX2 where the processor is an x86-64 that has it.
+#[inline(always)]
+pub(crate) fn vectorised<K: Kernel>(kernel: K) -> K::Output {
+    Arch::new().dispatch(Vectorised(kernel))
 }
 
 /// A kernel in the form that `pulp` compiles for each set of instructions.

@@ -4,6 +4,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use num_traits::{One, Zero};
 
+use crate::dispatch::{Dispatch, Kernel, vectorised};
 use crate::elementary::Elementary;
 use crate::powers::Powers;
 
@@ -124,6 +125,14 @@ impl<const N: usize> Elementary for Lanes<N> {
 }
 
 impl<const N: usize> Powers for Lanes<N> {}
+
+/// On x86-64, kernels over lanes take AVX2 where the processor has it.
+impl<const N: usize> Dispatch for Lanes<N> {
+    #[inline(always)]
+    fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+        vectorised(kernel)
+    }
+}
 
 impl<const N: usize> Lanes<N> {
     /// Returns a scalar whose lane i is `lanes[i]`.
