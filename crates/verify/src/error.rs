@@ -5,12 +5,20 @@ use thiserror::Error;
 /// The result of a fallible function of this crate.
 pub type Result<T> = core::result::Result<T, Error>;
 
+/// Returns the line, from 1, of a place in a text.
+pub(crate) fn line_of(text: &str, at: usize) -> usize {
+    text[..at].matches('\n').count() + 1
+}
+
 /// Why a question about a robot's links has no answer.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A text is not TOML, or has keys that are not known.
-    #[error("{origin}: {}\ncorrect the text; docs/verify.md describes the format", message.trim_end())]
+    #[error(
+        "{origin}: {}\ncorrect the text; docs/verify.md describes the format",
+        message.trim_end()
+    )]
     Syntax {
         /// The file that the text came from.
         origin: String,

@@ -8,6 +8,7 @@ mod occupancy;
 mod picture;
 mod report;
 mod scene;
+mod stop;
 mod verdict;
 
 pub use body::body::Body;
@@ -20,6 +21,9 @@ pub use picture::picture;
 pub use report::report;
 pub use scene::obstacle::{Obstacle, Solid};
 pub use scene::scenario::{Scenario, Scene};
+pub use stop::along::{WorstStop, stops_along};
+pub use stop::brakes::Brakes;
+pub use stop::stop::{JointStop, Stop, stop_0};
 pub use verdict::clearance::Clearance;
 pub use verdict::decide::Advice;
 pub use verdict::verification::{Answer, Verification, verify};

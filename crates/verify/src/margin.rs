@@ -71,7 +71,7 @@ impl Body {
             Interval::point(here).hull(Interval::point(next))
         };
         let moved: Vec<f64> = (0..n).map(|i| nominal(i).rad()).collect();
-        let Workspace { posture, point, q, radii } = workspace;
+        let Workspace { posture, points: [point, _], q, radii } = workspace;
         q.clear();
         q.extend((0..n).map(|i| nominal(i).mid()));
         radii.clear();

@@ -7,6 +7,8 @@ use reachtube_scalar::rounding::add_up;
 use serde::Serialize;
 
 use crate::body::body::{Body, Workspace};
+use crate::body::capsule::Capsule;
+use crate::kinematics::vector::Vector;
 
 /// Smallest number of steps in one task of a thread.
 const STEPS_PER_TASK: usize = 32;
@@ -56,15 +58,11 @@ impl Body {
     }
 
     /// Encloses the links while the joints lie in a box, whose first n sides are positions.
-    pub(crate) fn swept(&self, workspace: &mut Workspace, sides: &[Interval]) -> Vec<SweptCapsule> {
-        let positions = &sides[..self.joint_count()];
-        workspace.q.clear();
-        workspace.q.extend(positions.iter().map(|side| side.mid()));
-        workspace.radii.clear();
-        workspace.radii.extend(positions.iter().map(|side| side.rad()));
-        self.chain.pose(&workspace.q, &mut workspace.posture);
-        let swept = |(capsule, ends)| {
-            let [from, to] = workspace.balls(self, (capsule, ends));
+    fn swept(&self, workspace: &mut Workspace, sides: &[Interval]) -> Vec<SweptCapsule> {
+        workspace.pose(self, &sides[..self.joint_count()]);
+        let swept = |(capsule, ends): (&Capsule, &[Vector; 2])| {
+            workspace.linearise(self, capsule, ends);
+            let [from, to] = workspace.balls();
             let radius = add_up(capsule.radius, from.radius.max(to.radius));
             SweptCapsule { from: from.centre, to: to.centre, radius }
         };

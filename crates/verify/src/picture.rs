@@ -120,7 +120,14 @@ impl Scale {
         finite.for_each(|c| [c.from, c.to].into_iter().for_each(|end| take(end, c.radius)));
         for obstacle in &scene.obstacles {
             match obstacle.solid {
-                Solid::HalfSpace { .. } => {}
+                Solid::HalfSpace { normal, offset } => {
+                    // The base stands at the origin; a far plane would make the arm small.
+                    let square = normal.iter().map(|x| x * x).sum::<f64>();
+                    let edge = normal.map(|x| x * offset / square);
+                    if offset.abs() < square.sqrt() {
+                        take(edge, 0.05);
+                    }
+                }
                 Solid::Box { centre, .. } => take(centre, 0.1),
                 Solid::Capsule { from, to, radius } => {
                     [from, to].into_iter().for_each(|end| take(end, radius));

@@ -34,11 +34,18 @@ fn verdict(worst: &Verification, scene: &Scene) -> String {
     };
     let case = &worst.case;
     match (worst.answer, worst.clearances.first(), &worst.closest) {
-        (Answer::Unsafe, _, Some(found)) => format!(
-            "unsafe: on a motion of the model, the link of {} comes within {:.4} m of `{}` at \
-             {:.3} s ({case}).",
-            found.link, found.distance, found.obstacle, found.time
-        ),
+        (Answer::Unsafe, _, Some(found)) => {
+            let how = match found.distance {
+                overlap if overlap < 0.0 => {
+                    format!("overlaps `{}` by {:.4} m", found.obstacle, -overlap)
+                }
+                near => format!("is {near:.4} m from `{}`", found.obstacle),
+            };
+            format!(
+                "unsafe: on a motion of the model, the link of {} {how} at {:.3} s ({case}).",
+                found.link, found.time
+            )
+        }
         (Answer::Safe, Some(pair), _) => format!(
             "safe: on every motion of the model each link stays{keep} clear; the smallest proved \
              distance is {} m, of the link of {} from `{}` at {:.3} s ({case}).",

@@ -1,4 +1,5 @@
 use reachtube_robot::Robot;
+use reachtube_scalar::Interval;
 
 use crate::body::capsule::Capsule;
 use crate::body::capsules::Capsules;
@@ -40,7 +41,8 @@ pub struct Body {
 #[derive(Debug, Default)]
 pub(crate) struct Workspace {
     pub posture: Posture,
-    pub point: LinearisedPoint,
+    /// The ends of a capsule.
+    pub points: [LinearisedPoint; 2],
     /// One position per joint.
     pub q: Vec<f64>,
     /// One radius per joint.
@@ -87,26 +89,31 @@ impl Body {
         &self.names[index]
     }
 
-    /// Iterates over the links and their ends in the frames of their joints.
+    /// Iterates over the capsules and their ends in the frames of their joints.
     pub(crate) fn ends(&self) -> impl Iterator<Item = (&Capsule, &[Vector; 2])> {
         self.capsules.iter().zip(&self.ends)
     }
 }
 
 impl Workspace {
-    /// Encloses the ends of a capsule while the joints stay within `self.radii` of the posture.
-    pub(crate) fn balls(
-        &mut self,
-        body: &Body,
-        (capsule, ends): (&Capsule, &[Vector; 2]),
-    ) -> [Ball; 2] {
-        let Self { posture, point, radii, .. } = self;
-        let mut ball = |end: &Vector| {
-            point.at(&body.chain, posture, (capsule.joint, end), radii);
-            point.ball(radii)
-        };
-        let from = ball(&ends[0]);
-        let to = if ends[1] == ends[0] { from } else { ball(&ends[1]) };
-        [from, to]
+    /// Encloses the joint frames while the joints lie in a box of positions.
+    pub(crate) fn pose(&mut self, body: &Body, positions: &[Interval]) {
+        self.q.clear();
+        self.q.extend(positions.iter().map(|side| side.mid()));
+        self.radii.clear();
+        self.radii.extend(positions.iter().map(|side| side.rad()));
+        body.chain.pose(&self.q, &mut self.posture);
+    }
+
+    /// Linearises the ends of a capsule while the joints stay within `self.radii` of the posture.
+    pub(crate) fn linearise(&mut self, body: &Body, capsule: &Capsule, ends: &[Vector; 2]) {
+        for (point, end) in self.points.iter_mut().zip(ends) {
+            point.at(&body.chain, &self.posture, (capsule.joint, end), &self.radii);
+        }
+    }
+
+    /// Encloses the ends of the capsule that was linearised.
+    pub(crate) fn balls(&self) -> [Ball; 2] {
+        self.points.each_ref().map(|point| point.ball(&self.radii))
     }
 }

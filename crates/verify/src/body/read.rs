@@ -5,7 +5,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::body::capsule::Capsule;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, line_of};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -35,10 +35,9 @@ enum LinkName {
 pub(super) fn parse(text: &str, origin: &str, robot: &Robot) -> Result<Vec<Capsule>> {
     let file: File = toml::from_str(text)
         .map_err(|e| Error::Syntax { origin: origin.into(), message: e.to_string() })?;
-    let line = |at: usize| text[..at].lines().count().max(1);
     let invalid = |at: usize, place: String, problem: String, remedy: String| Error::Invalid {
         origin: origin.into(),
-        line: line(at),
+        line: line_of(text, at),
         place,
         problem,
         remedy,

@@ -1,10 +1,10 @@
 //! A point of a link as a function of the joints' positions, linearised with a proved remainder.
 
 use reachtube_scalar::Interval;
-use reachtube_scalar::rounding::{add_up, mul_up, sqrt_up};
+use reachtube_scalar::rounding::{add_up, mul_up, sqrt_up, sub_down};
 
 use super::chain::{Chain, Posture};
-use super::vector::{Vector, cross, norm, norm_of_bounds, sub};
+use super::vector::{Vector, cross, dot, norm, norm_of_bounds, sub};
 
 /// Number of generators up to which the largest norm is sought over all vertices.
 const VERTEX_GENERATORS: usize = 10;
@@ -49,8 +49,8 @@ impl LinearisedPoint {
     /// `radii` of it.
     ///
     /// A joint before joint k turns J_k without changing its length. A joint m after it changes J_k
-    /// by z_k × J_m. Hence |J_k(q)| <= |J_k(q_c)| + Σ_{m>k} |J_m| r_m. Nor is the point further from
-    /// the axis than the lengths between the joints after it allow.
+    /// by z_k × J_m. Hence |J_k(q)| <= |J_k(q_c)| + Σ_{m>k} |J_m| r_m.
+    /// The lengths between the joints after it limit the distance from the axis, too.
     ///
     /// # Guarantee
     ///
@@ -89,18 +89,41 @@ impl LinearisedPoint {
         }
     }
 
+    /// Returns p(q_c), rounded to nearest.
+    pub(crate) fn centre(&self) -> [f64; 3] {
+        self.position.map(Interval::mid)
+    }
+
     /// Encloses the point for joints within `radii` of the posture.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
     pub(crate) fn ball(&self, radii: &[f64]) -> Ball {
-        let centre = self.position.map(Interval::mid);
+        let centre = self.centre();
         let rounding = norm(&core::array::from_fn(|i| self.position[i] - centre[i]));
         let linear = self.largest_shift(radii.iter().map(|r| Interval::centred(0.0, *r)));
         let remainder = mul_up(0.5, self.second_order(radii, radii));
         let shift = add_up(linear, remainder).min(self.first_order(radii));
         Ball { centre, radius: add_up(rounding, shift) }
+    }
+
+    /// Returns a lower bound of n · p(q) for joints within `radii` of the posture. In one direction
+    /// the image of the joints' box is narrower than the ball around it.
+    ///
+    /// # Guarantee
+    ///
+    /// A lower bound, directed rounding.
+    pub(crate) fn lowest(&self, n: &Vector, radii: &[f64]) -> f64 {
+        let along = self.columns.iter().zip(radii);
+        let linear =
+            along.fold(0.0, |sum, (column, r)| add_up(sum, mul_up(dot(n, column).mag(), *r)));
+        let remainder = mul_up(0.5, self.second_order(radii, radii));
+        let length = norm(n);
+        let shift = add_up(linear, mul_up(length, remainder));
+        let shift = shift.min(mul_up(length, self.first_order(radii)));
+        let lowest = sub_down(dot(n, &self.position).lo(), shift);
+        if lowest.is_nan() { f64::NEG_INFINITY } else { lowest }
     }
 
     /// Bounds the distance |p(q + e) - p(q)| for q within `moved` of the posture and e in `shift`;

@@ -49,8 +49,8 @@ fn from_box([a, b]: [Point; 2], centre: [f64; 3], axes: [[f64; 3]; 3], half: [f6
     ends.into_iter().min_by(|v, w| v.norm().total_cmp(&w.norm())).unwrap_or_default()
 }
 
-/// Returns the vector from the closest point of the segment `c` to that of `s` (Ericson, Real-Time
-/// Collision Detection, section 5.1.9).
+/// Returns the vector between the closest points of two segments, from `c` to `s` (Ericson,
+/// Real-Time Collision Detection, section 5.1.9).
 fn between_segments(s: [Point; 2], c: [Point; 2]) -> Point {
     let (d, e, r) = (s[1] - s[0], c[1] - c[0], s[0] - c[0]);
     let (dd, ee, de) = (d.norm_squared(), e.norm_squared(), d.dot(&e));

@@ -7,7 +7,7 @@ use reachtube_robot::Robot;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, line_of};
 use crate::scene::obstacle::{Obstacle, Solid};
 
 /// The speed at which a person approaches, m/s (ISO 13855, walking).
@@ -217,7 +217,7 @@ impl Scenario {
     fn invalid(&self, at: usize, place: &str, problem: &str, remedy: &str) -> Error {
         Error::Invalid {
             origin: self.origin.clone(),
-            line: self.text[..at].lines().count().max(1),
+            line: line_of(&self.text, at),
             place: place.into(),
             problem: problem.into(),
             remedy: remedy.into(),

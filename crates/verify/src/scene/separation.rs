@@ -4,28 +4,32 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up, sub_down};
 
 use crate::kinematics::vector::{Vector, dot, point};
-use crate::occupancy::SweptCapsule;
 use crate::scene::direction::direction;
 use crate::scene::obstacle::{Obstacle, Solid};
 
-/// Returns a lower bound of the distance in m between a capsule and an obstacle that has grown
-/// until `time` (s); negative where a distance above 0 is not proved.
+/// Returns a lower bound of the distance in m between the capsules of a link and an obstacle that
+/// has grown until `time` (s); negative where a distance above 0 is not proved.
 ///
-/// For any direction n, two convex sets S and O are at least min n·S - max n·O apart in units of
-/// |n|. The bound is tight for the direction between their closest points.
+/// `lowest` returns a lower bound of n · p over all points p of the segments of the capsules, which
+/// lie near `segment`; `radius` is the radius of the capsules. For any direction n, two convex sets
+/// S and O are at least min n·S - max n·O apart in units of |n|. The bound is tight for the
+/// direction between their closest points.
 ///
 /// # Guarantee
 ///
 /// A lower bound, directed rounding.
-pub(crate) fn separation(capsule: &SweptCapsule, obstacle: &Obstacle, time: f64) -> f64 {
-    let normal = direction([capsule.from, capsule.to], &obstacle.solid);
-    let n = point(normal);
-    let lowest = Interval::min(dot(&n, &point(capsule.from)), dot(&n, &point(capsule.to)));
+pub(crate) fn separation(
+    lowest: impl Fn(&Vector) -> f64,
+    (segment, radius): ([[f64; 3]; 2], f64),
+    obstacle: &Obstacle,
+    time: f64,
+) -> f64 {
+    let n = point(direction(segment, &obstacle.solid));
     let (highest, own_radius) = support(&obstacle.solid, &n);
     let length = dot(&n, &n).sqrt();
-    let between = (lowest - highest) / length;
+    let between = (Interval::point(lowest(&n)) - highest) / length;
     let grown = add_up(own_radius, mul_up(obstacle.speed, time));
-    let bound = sub_down(between.lo(), add_up(capsule.radius, grown));
+    let bound = sub_down(between.lo(), add_up(radius, grown));
     if bound.is_nan() { f64::NEG_INFINITY } else { bound }
 }
 
@@ -54,8 +58,15 @@ mod tests {
         Obstacle { name: "o".into(), solid, speed, joints: None }
     }
 
-    const BAR: SweptCapsule =
-        SweptCapsule { from: [0.0, 0.0, 1.0], to: [2.0, 0.0, 1.0], radius: 0.25 };
+    const BAR: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [2.0, 0.0, 1.0]];
+
+    /// The distance of a bar of radius 0.25 m.
+    fn of_bar(obstacle: &Obstacle, time: f64) -> f64 {
+        let lowest = |n: &Vector| {
+            BAR.map(|end| dot(n, &point(end)).lo()).into_iter().fold(f64::INFINITY, f64::min)
+        };
+        separation(lowest, (BAR, 0.25), obstacle, time)
+    }
 
     const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
@@ -90,7 +101,7 @@ mod tests {
             ),
         ];
         for (obstacle, exact) in cases {
-            let found = separation(&BAR, &obstacle, 2.0);
+            let found = of_bar(&obstacle, 2.0);
             assert!(found <= exact && found > exact - 1e-12, "{found} {exact} {obstacle:?}");
         }
     }
@@ -102,10 +113,10 @@ mod tests {
             Solid::Box { centre: [1.0, 0.0, 1.0], axes: IDENTITY, half: [0.1; 3] },
             Solid::Capsule { from: [1.0, 0.0, 1.0], to: [1.0, 1.0, 1.0], radius: 0.1 },
         ] {
-            assert!(separation(&BAR, &obstacle(solid, 0.0), 0.0) < 0.0, "{solid:?}");
+            assert!(of_bar(&obstacle(solid, 0.0), 0.0) < 0.0, "{solid:?}");
         }
-        let wide = SweptCapsule { radius: f64::INFINITY, ..BAR };
-        let ball = Solid::Capsule { from: [9.0; 3], to: [9.0; 3], radius: 0.1 };
-        assert_eq!(separation(&wide, &obstacle(ball, 0.0), 0.0), f64::NEG_INFINITY);
+        let ball = obstacle(Solid::Capsule { from: [9.0; 3], to: [9.0; 3], radius: 0.1 }, 0.0);
+        let nowhere = separation(|_| f64::NEG_INFINITY, (BAR, 0.25), &ball, 0.0);
+        assert_eq!(nowhere, f64::NEG_INFINITY);
     }
 }

@@ -6,7 +6,8 @@ use reachtube_scalar::Interval;
 use serde::Serialize;
 
 use crate::body::body::{Body, Workspace};
-use crate::occupancy::SweptCapsule;
+use crate::kinematics::linearised_point::LinearisedPoint;
+use crate::kinematics::vector::Vector;
 use crate::scene::scenario::Scene;
 use crate::scene::separation::separation;
 use crate::verdict::part_of_step::PartOfStep;
@@ -83,13 +84,10 @@ pub(crate) fn clearances(
 }
 
 impl Search<'_> {
-    /// Lowers the distances `found` (one per pair) to those of a part of a step.
+    /// Lowers the distances `found` (one per pair) to the distances over a part of a step.
     fn lower(&self, memory: &mut Memory, part: PartOfStep, parts: u32, found: &mut [f64]) {
         part.positions(self.reach, &mut memory.positions);
-        let swept = self.body.swept(&mut memory.workspace, &memory.positions);
-        let end = part.end(self.reach);
-        let here: Vec<f64> =
-            self.pairs.iter().map(|pair| self.separation(*pair, &swept, end)).collect();
+        let here = self.distances(memory, part.end(self.reach));
         let is_close = here.iter().any(|distance| *distance <= self.scene.clearance);
         if is_close && parts > 1 {
             for half in part.halves() {
@@ -100,8 +98,28 @@ impl Search<'_> {
         }
     }
 
-    fn separation(&self, (capsule, obstacle): Pair, swept: &[SweptCapsule], time: f64) -> f64 {
-        separation(&swept[capsule], &self.scene.obstacles[obstacle], time)
+    /// Returns the distance of each pair while the joints lie in the box of positions.
+    fn distances(&self, memory: &mut Memory, time: f64) -> Vec<f64> {
+        let Memory { workspace, positions } = memory;
+        workspace.pose(self.body, positions);
+        let mut distances = Vec::with_capacity(self.pairs.len());
+        let mut pairs = self.pairs.iter().peekable();
+        for (index, (capsule, ends)) in self.body.ends().enumerate() {
+            if pairs.peek().is_none_or(|pair| pair.0 != index) {
+                continue;
+            }
+            workspace.linearise(self.body, capsule, ends);
+            let Workspace { points, radii, .. } = &*workspace;
+            let lowest = |n: &Vector| {
+                points.iter().map(|end| end.lowest(n, radii)).fold(f64::INFINITY, f64::min)
+            };
+            let shape = (points.each_ref().map(LinearisedPoint::centre), capsule.radius);
+            while let Some((_, obstacle)) = pairs.next_if(|pair| pair.0 == index) {
+                let obstacle = &self.scene.obstacles[*obstacle];
+                distances.push(separation(lowest, shape, obstacle, time));
+            }
+        }
+        distances
     }
 
     /// Returns the smallest distance of each link from each obstacle.

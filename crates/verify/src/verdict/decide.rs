@@ -18,7 +18,7 @@ const HALVINGS: u32 = 6;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Advice {
-    /// Steps divided into so many parts prove that the links stay clear.
+    /// Steps divided into this number of parts prove that the links stay clear.
     Refine(u32),
     /// X0 and U scaled by this factor about their centres, with steps divided into 64 parts, prove
     /// that the links stay clear.

@@ -6,3 +6,4 @@ mod frames;
 mod margin;
 mod occupancy;
 mod schunk;
+mod stop;
