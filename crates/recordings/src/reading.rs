@@ -321,16 +321,18 @@ impl Reading<'_> {
 
     /// Adds a defect for value `at` of a line, in the order of [`Self::columns`].
     fn bad_number(&mut self, line: u64, at: usize, text: &str) {
-        let n = self.run.joints;
-        let joint = at.checked_sub(1).map(|index| index % n + 1);
+        let (n, joint) = (self.run.joints, at.checked_sub(1).map(|i| i % self.run.joints + 1));
         let mut names =
             std::iter::once("t".into()).chain(column_names(n)).chain((1..=n).map(temperature));
         let name = names.nth(at).unwrap_or_default();
-        let problem = match text {
-            "" => format!("{name} is empty"),
-            _ => format!("{name} is {}, not a finite number", quoted(text)),
+        let problem = match text.is_empty() {
+            true => format!("{name} is empty"),
+            false => format!("{name} is {}, not a finite number", quoted(text)),
         };
-        let remedy = "every value must be a number: cut the run before this line, or record again";
+        let remedy = match text.is_empty() && (n + 1..=2 * n).contains(&at) {
+            true => "if no velocity was measured, delete the columns of qd; `model` derives them",
+            false => "every value must be a number: cut the run before this line, or record again",
+        };
         let defect = Defect::new(self.path, Some(line), problem, remedy).of_kind(DefectKind::Value);
         self.defects.push(defect.of_joint(joint));
     }

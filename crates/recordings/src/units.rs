@@ -162,8 +162,13 @@ fn position_defects(path: &Path, furthest: &[f64], robot: &Robot) -> Vec<Defect>
                 "|q| reaches {}, but the joint's limits are {low} and {high} {unit}",
                 size(furthest)
             );
-            let remedy =
-                format!("give q in {unit}, or correct the limits in the robot's description");
+            let guess = match description.kind {
+                JointKind::Revolute => "it may be in degrees: ",
+                JointKind::Prismatic => "it may be in mm: ",
+            };
+            let remedy = format!(
+                "{guess}give q in {unit}, or correct the limits in the robot's description"
+            );
             joint_defect(path, joint, problem, &remedy)
         })
     };

@@ -118,12 +118,12 @@ impl Envelope {
     }
 
     /// Returns the run that has the highest value.
-    pub fn upper_run(&self, k: usize, i: usize) -> u32 {
+    pub(crate) fn upper_run(&self, k: usize, i: usize) -> u32 {
         self.upper_run[k * self.dimension + i]
     }
 
     /// Returns the run that has the lowest value.
-    pub fn lower_run(&self, k: usize, i: usize) -> u32 {
+    pub(crate) fn lower_run(&self, k: usize, i: usize) -> u32 {
         self.lower_run[k * self.dimension + i]
     }
 

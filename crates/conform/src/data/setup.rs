@@ -54,7 +54,7 @@ impl Setup {
     ///
     /// [`Error::Unbounded`] when the model's error was found to have no bound over its box, and
     /// settings that do not fit.
-    pub fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
+    pub(crate) fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
         let settings = settings.with_abstraction(&model)?;
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;

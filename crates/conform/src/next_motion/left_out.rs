@@ -3,6 +3,7 @@ use rayon::prelude::*;
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
 use crate::error::Result;
+use crate::next_motion::allowance::Missing;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{COARSE, OuterGauge, outer_gauge};
 use crate::next_motion::without_motion::LeftOut;
@@ -19,6 +20,16 @@ struct Without<'a> {
     problem: &'a Problem,
     /// Which suites are the motion's.
     suites: Vec<bool>,
+}
+
+/// Motions that were left out, beside the sets of the others.
+#[derive(Default)]
+pub(crate) struct LeftOutMotions {
+    /// Each motion.
+    pub each: Vec<LeftOut>,
+    /// The rows of motions that lie beyond the sets of the others. `None` for a single motion, for
+    /// a program that could not be solved, and for a model that is not linear.
+    pub missing: Option<Missing>,
 }
 
 /// Leaves each motion out of the program that gave the smallest sets, one after the other, and
@@ -38,10 +49,10 @@ pub(crate) fn leave_each_out(
     sets: &UncertaintySets,
     mut rows: Vec<RowIndex>,
     progress: &dyn Progress,
-) -> Result<Vec<LeftOut>> {
+) -> Result<LeftOutMotions> {
     let motions = Motions::new(problem.recordings());
     if motions.count() < 2 || problem.settings().notion.asks_points() {
-        return Ok(Vec::new());
+        return Ok(LeftOutMotions::default());
     }
     let suites = 0..problem.recordings().suites.len();
     let all = motions.distinct().into_iter().map(|motion| {
@@ -72,16 +83,32 @@ pub(crate) fn leave_each_out(
         match *number {
             None => {
                 let cost = Some(program.cost(sets));
-                Ok(LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown })
+                let left = LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown };
+                Ok((left, Some(Missing::new())))
             }
-            Some(number) if number > MOST_PROGRAMS => Ok(unknown),
+            Some(number) if number > MOST_PROGRAMS => Ok((unknown, Some(Missing::new()))),
             Some(_) => {
                 let (own, others) = (without.own(program)?, without.others(program)?);
                 without.compare(&others, &rows, &own, unknown)
             }
         }
     };
-    numbered.par_iter().map(leave_out).collect()
+    let left: Vec<_> = numbered.par_iter().map(leave_out).collect::<Result<_>>()?;
+    let (each, missing): (Vec<LeftOut>, Vec<Option<Missing>>) = left.into_iter().unzip();
+    let is_linear = problem.dynamics().linear_system().is_some();
+    let missing: Option<Vec<Missing>> = missing.into_iter().collect();
+    let missing = missing.filter(|_| is_linear).map(merged);
+    Ok(LeftOutMotions { each, missing })
+}
+
+/// Returns the rows that any comparison misses, each by the most that it misses.
+fn merged(all: Vec<Missing>) -> Missing {
+    let mut merged = Missing::new();
+    for (row, (excess, gains)) in all.into_iter().flatten() {
+        let own = merged.entry(row).or_insert((0.0, gains));
+        own.0 = own.0.max(excess);
+    }
+    merged
 }
 
 impl Without<'_> {
@@ -139,8 +166,10 @@ impl Without<'_> {
         rows: &[RowIndex],
         own: &[Program],
         unknown: LeftOut,
-    ) -> Result<LeftOut> {
-        let Ok(solution) = others.solve_near(rows) else { return Ok(unknown) };
+    ) -> Result<(LeftOut, Option<Missing>)> {
+        let Ok(solution) = others.solve_near(rows) else {
+            return Ok((unknown, None));
+        };
         let sets = others.repaired(&solution.sets);
         let input_only = self.problem.settings().nominal == NominalStart::Own;
         let growth = |own: &Program| {
@@ -152,7 +181,9 @@ impl Without<'_> {
             Some(_) => (Some(own.iter().map(|own| own.outside(&sets)).sum()), growth),
             None => self.outer(&sets, growth.unwrap_or(1.0), input_only)?,
         };
-        Ok(LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown })
+        let mut missing = Missing::default();
+        own.iter().for_each(|own| own.missing(&sets, &mut missing));
+        Ok((LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown }, Some(missing)))
     }
 
     /// Returns how many of the motion's rows leave the computed outer sets, and the motion's gauge
