@@ -106,6 +106,9 @@ fn sets_table(model: &Model) -> SetsTable {
     SetsTable { notion: notion.into(), joints: (0..n).map(row).collect() }
 }
 
+/// The name of the radii that were added to the sets.
+const ALLOWANCE: &str = "Allowance added to the smallest X0, then U [SI units]";
+
 fn facts(model: &Model) -> Vec<(String, String)> {
     let settings = &model.settings;
     let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
@@ -147,6 +150,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("SHA-256 of the model", model.sha256.clone()),
     ]
     .into_iter()
+    .chain((!model.allowance.is_empty()).then(|| (ALLOWANCE, word(&model.allowance))))
     .map(|(name, value)| (name.to_string(), value))
     .collect()
 }

@@ -207,6 +207,7 @@ impl Evidence<'_> {
         let recordings = Prepared {
             logs: &nominal.logs,
             motions: &none,
+            parts: None,
             from_start: false,
             simulated: false,
             origins: None,

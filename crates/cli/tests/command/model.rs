@@ -235,18 +235,27 @@ fn a_log_of_standstill_is_refused() {
 
 #[test]
 #[ignore = "needs the recordings in ../shared"]
-fn raw_logs_of_two_arms_become_useful_models() {
+fn logs_of_four_arms_become_useful_models() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let data = data.canonicalize().unwrap();
     let lab = Lab::new();
+    let (shared, docs) = (data.display(), Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs"));
     let arms = [
-        ("ur10e/ur10e.urdf", "ur10e/excitation", 0.3),
-        ("double_pendulum/acrobot.urdf", "double_pendulum/openloop", 0.1),
+        (format!("{shared}/ur10e/ur10e.urdf"), "ur10e/excitation", "motor", 0.2),
+        (
+            format!("{shared}/double_pendulum/acrobot.urdf"),
+            "double_pendulum/openloop",
+            "motor",
+            0.1,
+        ),
+        (format!("{}/identify/panda-robot.toml", docs.display()), "panda", "link", 0.2),
+        ("lwa4p".into(), "schunk_lwa4p", "compensated", 0.1),
     ];
-    for (robot, logs, horizon) in arms {
-        let (robot, logs) = (data.join(robot), data.join(logs));
-        let (robot, shown) = (robot.display(), logs.display());
-        let line = format!("model --robot {robot} --data {shown} --torque motor --out arm --force");
+    for (robot, logs, torque, horizon) in arms {
+        let logs = data.join(logs);
+        let shown = logs.display();
+        let line =
+            format!("model --robot {robot} --data {shown} --torque {torque} --out arm --force");
         let answer = json(&lab.run(&format!("{line} --json")).exits(0).stdout);
         assert!(answer["horizon"].as_f64().unwrap() >= horizon, "{}", answer["horizon"]);
         let held_out = &answer["held_out"];

@@ -118,6 +118,9 @@ pub struct Model {
     /// How the sets were scaled, where motions were held out for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// The radii that were added to the smallest X0 and U, 3n, in SI units; none if none were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowance: Vec<f64>,
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
@@ -202,7 +205,7 @@ impl Model {
             cost_paper: found.paper_cost,
             hull_volume: finite(found.hull_volume),
             search: found.search.clone(),
-            explained: settings.explain.map(explained),
+            explained: settings.explain.filter(|_| !found.explanations.is_empty()).map(explained),
             initial_set,
             input_set,
             noise_set,
@@ -214,6 +217,7 @@ impl Model {
             proof: found.verdict.clone(),
             trust: found.trust.clone(),
             calibration: found.calibration.clone(),
+            allowance: found.allowance.clone(),
             left_out: found.left_out.clone(),
             deciding_runs: found.deciding_runs.clone(),
             trends: found.trends.clone(),

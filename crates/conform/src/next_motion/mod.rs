@@ -1,6 +1,7 @@
 //! Statements about motions that were not recorded: bounds, calibration by held-out motions, and
 //! descriptions of how far the sets depend on single motions and runs.
 
+pub(crate) mod allowance;
 pub(crate) mod any_run;
 pub(crate) mod bounds;
 pub(crate) mod calibration;

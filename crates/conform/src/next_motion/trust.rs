@@ -106,6 +106,15 @@ impl Trust {
         Self::unknown(Motions::new(recordings).count(), basis.into())
     }
 
+    /// Returns that there is no guarantee for sets that were widened by what motions ask for that
+    /// are among the recordings.
+    #[must_use]
+    pub(crate) fn with_allowance(recordings: &Recordings) -> Self {
+        let basis = "no scenario bound: it holds for the smallest sets only, and these were \
+                     widened by an allowance for motions left out";
+        Self::unknown(Motions::new(recordings).count(), basis.into())
+    }
+
     /// Returns the bound for sets that were calibrated by motions that were held out from the fit,
     /// and that enclose them where `is_proved`.
     ///

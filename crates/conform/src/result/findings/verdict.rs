@@ -260,6 +260,9 @@ impl Finding {
             }
             (None, Some(search)) => format!(" ({})", search_words(search)),
             (None, None) if model.calibration.is_some() => " (calibrated, not the smallest)".into(),
+            (None, None) if !model.allowance.is_empty() => {
+                " (with an allowance, not the smallest)".into()
+            }
             (None, None) => String::new(),
         };
         let text = format!(
