@@ -164,7 +164,7 @@ mod tests {
         let finding = Finding::growth_needed(&growth, &[JointKind::Revolute]);
         assert_eq!(finding.numbers["input_set"], 1.25);
         let text = finding.text;
-        assert!(text.contains("covered if U is 1.2500 times as wide, or if X0 and U"), "{text}");
+        assert!(text.contains("covered if U is 1.250 times as wide, or if X0 and U"), "{text}");
         assert!(text.contains("Widening X0 alone does not help"), "{text}");
         assert!(!text.contains("X0 is"), "{text}");
     }
