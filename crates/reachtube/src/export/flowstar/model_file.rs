@@ -50,7 +50,7 @@ fn rate(case: &ExportCase, form: InputForm, system: &LinearSystem, i: usize) -> 
         if gain == Interval::point(0.0) {
             continue;
         }
-        constant = constant + gain * Interval::point(side.mid());
+        constant += gain * Interval::point(side.mid());
         let radius = (gain * Interval::point(side.rad())).mag();
         let sign = if gain.hi() < 0.0 { '-' } else { '+' };
         terms.push(format!("{sign} {}*w{}", number(radius), j + 1));
