@@ -185,6 +185,9 @@ pub(crate) enum Error {
         "only mjcf and urdf take --robot; name a model that `conform --out` wrote with --model"
     )]
     NoModel,
+    /// `export --update` for a file that is no URDF.
+    #[error("--update is for --to urdf only; leave it out, or export to urdf")]
+    NothingToUpdate,
     /// `export` has no recorded input.
     #[error(
         "an export to {tool} needs the recorded input; name the recordings with --data and the \

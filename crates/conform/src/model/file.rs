@@ -118,6 +118,9 @@ pub struct Model {
     /// How the sets were scaled, where motions were held out for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// The radii that were added to the smallest X0 and U, 3n, in SI units; none if none were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowance: Vec<f64>,
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
@@ -202,7 +205,7 @@ impl Model {
             cost_paper: found.paper_cost,
             hull_volume: finite(found.hull_volume),
             search: found.search.clone(),
-            explained: settings.explain.map(explained),
+            explained: settings.explain.filter(|_| !found.explanations.is_empty()).map(explained),
             initial_set,
             input_set,
             noise_set,
@@ -214,6 +217,7 @@ impl Model {
             proof: found.verdict.clone(),
             trust: found.trust.clone(),
             calibration: found.calibration.clone(),
+            allowance: found.allowance.clone(),
             left_out: found.left_out.clone(),
             deciding_runs: found.deciding_runs.clone(),
             trends: found.trends.clone(),
@@ -307,7 +311,18 @@ impl Model {
         let calibrated_cost = self.calibration.as_ref().and(self.cost);
         let overfit = record.overfitted(calibrated_cost);
         self.warnings.extend(overfit.as_ref().map(Warning::from));
+        let seen = self.fitted_runs();
+        self.robot.add_identified_from(seen);
         Self { fit: Some(record), ..self }.sealed()
+    }
+
+    /// Returns the SHA-256 of the listed recordings that a fit has seen: recordings of motions that
+    /// were not held out.
+    fn fitted_runs(&self) -> Vec<String> {
+        let held_out: HashSet<&str> =
+            self.calibration.iter().flat_map(Calibration::held_out).collect();
+        let suites = self.data.suites.iter().filter(|suite| !held_out.contains(suite.motion()));
+        suites.flat_map(|suite| &suite.runs).map(|run| run.sha256.clone()).collect()
     }
 
     pub(super) fn sealed(self) -> Self {
@@ -340,18 +355,21 @@ impl Model {
         self.knows_of(recordings).unwrap_or(true)
     }
 
-    /// Returns whether one of these recordings is among the recordings that the model was fitted
-    /// to; `None` if that cannot be known, because the file lists no recordings, or because a fold
-    /// that was not made to check this model has not kept the SHA-256 of each recording.
+    /// Returns whether one of these recordings is among the recordings that the model was fitted to
+    /// or its robot identified from; `None` if that cannot be known, because the file lists no
+    /// recordings, or because a fold that was not made to check this model has not kept the SHA-256
+    /// of each recording.
     #[must_use]
     pub fn knows_of(&self, recordings: &Recordings) -> Option<bool> {
         if !self.data.are_listed() {
             return None;
         }
         let suites = self.data.suites.iter().flat_map(|suite| &suite.runs);
-        let fitted: HashSet<&str> = suites.map(|run| run.sha256.as_str()).collect();
+        let seen = &self.robot.identified_from;
+        let fitted: HashSet<&str> =
+            suites.map(|run| run.sha256.as_str()).chain(seen.iter().map(String::as_str)).collect();
         let mut runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
-        if runs.any(|run| fitted.contains(run.sha256.as_str())) {
+        if runs.any(|run| run.is_among(&fitted)) {
             return Some(true);
         }
         let are_complete = recordings.suites.iter().all(|suite| suite.every_run().is_ok());

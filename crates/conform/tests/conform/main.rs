@@ -6,6 +6,7 @@ mod equations;
 mod fit;
 mod fold;
 mod friction;
+mod guarantees;
 mod model_file;
 mod next_motion;
 mod nonlinear;
