@@ -59,8 +59,8 @@ Examples:
   reachtube reproduce table1
       repeat the paper's simulations
 
-Exit codes: 0 conformant, safe or done, 1 not conformant or unsafe, 2 error, 3 conformant but
-vacuous, or undecided.
+Exit codes: 0 conformant (or done), 1 not conformant, 2 error, 3 vacuous or undecided.
+
 Results go to standard output; notes, warnings and errors go to standard error.";
 
 #[derive(Debug, Subcommand)]

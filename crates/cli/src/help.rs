@@ -19,12 +19,14 @@ const FEW_EXAMPLES: usize = 2;
 
 /// The commands in the order in which they are needed.
 const GROUPS: &[(&str, &[&str])] = &[
-    ("From logs to a model", &["model", "check", "inspect", "export", "report"]),
+    (
+        "From logs to a model, and to safety",
+        &["model", "check", "inspect", "export", "report", "verify", "stop"],
+    ),
     (
         "The steps of `model`, one by one",
         &["identify", "prepare", "conform", "abstract", "reach", "excite", "convert"],
     ),
-    ("From a model to safety", &["verify", "stop"]),
     ("The paper", &["demo", "campaign", "reproduce"]),
     ("The rest", &["robot", "completions", "man"]),
 ];

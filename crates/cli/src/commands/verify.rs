@@ -77,7 +77,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(outcome)
 }
 
-/// Returns the capsules that the scenario names, or those that are known for the robot.
+/// Returns the capsules that the scenario names, or the embedded ones of the robot.
 fn capsules(scenario: &Scenario, robot: &Robot) -> Result<Capsules> {
     let Some(path) = &scenario.capsules else { return Ok(Capsules::embedded(robot)?) };
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {

@@ -114,7 +114,8 @@ fn a_person_comes_closer_with_time() {
     let lab = lab();
     let person = |speed: &str| {
         format!(
-            "[[person]]\nname = \"p\"\n{speed}\ncapsule = {{ from = [1.5, 0, 0], to = [1.5, 0, 1.7], radius = 0.2 }}\n"
+            "[[person]]\nname = \"p\"\n{speed}\n\
+             capsule = {{ from = [1.5, 0, 0], to = [1.5, 0, 1.7], radius = 0.2 }}\n"
         )
     };
     let distance =

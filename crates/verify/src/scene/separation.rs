@@ -27,7 +27,11 @@ pub(crate) fn separation(
     let n = point(direction(segment, &obstacle.solid));
     let (highest, own_radius) = support(&obstacle.solid, &n);
     let length = dot(&n, &n).sqrt();
-    let between = (Interval::point(lowest(&n)) - highest) / length;
+    let lowest = lowest(&n);
+    if !lowest.is_finite() {
+        return f64::NEG_INFINITY;
+    }
+    let between = (Interval::point(lowest) - highest) / length;
     let grown = add_up(own_radius, mul_up(obstacle.speed, time));
     let bound = sub_down(between.lo(), add_up(radius, grown));
     if bound.is_nan() { f64::NEG_INFINITY } else { bound }

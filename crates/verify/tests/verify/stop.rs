@@ -165,7 +165,8 @@ fn ten_thousand_simulated_stops_lie_in_the_enclosed_ones() {
             .collect();
         let [least, median, worst] = statistics(all);
         println!(
-            "radius {radius}: enclosed over worst simulated way: least {least:.3}, median {median:.2}, worst {worst:.2}"
+            "radius {radius}: enclosed over worst simulated way: least {least:.3}, \
+             median {median:.2}, worst {worst:.2}"
         );
     }
 }
