@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let opened = OpenedCheck::new(&args.model, None, Keep::Needed)?;
     let robot = opened.problem.robot();
     let brakes = Brakes::from_toml(&text, &args.brakes.display().to_string(), robot)?;
-    output::notes(&opened.problem.recordings().notes);
+    opened.print_notes(&args.model.data);
     let all = {
         let _bar = Progress::new();
         stops_along(&opened.problem, &brakes, args.every)

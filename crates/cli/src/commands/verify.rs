@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         max_gap: None,
     };
     let opened = OpenedCheck::with(model, setup, &data, None, Keep::Needed)?;
-    output::notes(&opened.problem.recordings().notes);
+    opened.print_notes(&data);
     let all = {
         let _bar = Progress::new();
         verify(&opened.problem, opened.tube(), &body, &scene)?
