@@ -301,12 +301,16 @@ impl Model {
     }
 
     /// Returns the model with the record of how its nominal model was fitted, and a warning where
-    /// the fit suits its own motions only.
+    /// the fit suits its own motions only. Motions are left out of the fit of a linear model too.
     #[must_use]
     pub fn with_fit(mut self, record: FitRecord) -> Self {
         let calibrated_cost = self.calibration.as_ref().and(self.cost);
         let overfit = record.overfitted(calibrated_cost);
         self.warnings.extend(overfit.as_ref().map(Warning::from));
+        // The nominal model that was fitted to all motions has seen each of them.
+        if record.taken && !self.a.is_empty() && !self.left_out.is_empty() {
+            self.left_out = record.leave_one_out.iter().map(LeftOut::from).collect();
+        }
         Self { fit: Some(record), ..self }.sealed()
     }
 

@@ -83,6 +83,30 @@ pub(crate) fn leave_each_out(
     numbered.par_iter().map(leave_out).collect()
 }
 
+/// Finds the sets of the other motions of a linear model, and compares `motion` with them.
+///
+/// # Errors
+///
+/// As [`Problem::run`]; [`Error::NotLinear`](crate::Error::NotLinear).
+pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<LeftOut> {
+    let motions = Motions::new(problem.recordings());
+    let suites = 0..problem.recordings().suites.len();
+    let suites = suites.map(|suite| motions.of_suite(suite) == motion).collect();
+    let without = Without { problem, suites };
+    let limits = problem.with_suites(|suite| !without.suites[suite]).limits();
+    let program = Program::of_problem(problem)?.with_limits(limits);
+    let own = without.own(&program)?;
+    let unknown = LeftOut {
+        motion: motion.into(),
+        cost: None,
+        rows: own.iter().map(|own| own.rows() / 2).sum(),
+        outside: None,
+        gauge: None,
+    };
+    let others = without.rows(&program, |suite| !without.suites[suite])?;
+    without.compare(&others, &[], &own, unknown)
+}
+
 impl Without<'_> {
     /// Returns the program with the rows of some suites alone.
     fn rows<'p>(&self, program: &Program<'p>, of: impl Fn(usize) -> bool) -> Result<Program<'p>> {

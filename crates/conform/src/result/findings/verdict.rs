@@ -248,6 +248,11 @@ impl Finding {
                     (None, Some(gap)) if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
                     (None, _) => "optimal".into(),
                 };
+                // A fit ends in a local optimum: other nominal models may have smaller sets.
+                let optimal = match &model.fit {
+                    Some(fit) if fit.taken => format!("{optimal} for this nominal model"),
+                    _ => optimal,
+                };
                 format!(" ({optimal}; lower bound {})", four_decimals(bound))
             }
             (None, Some(search)) => format!(" ({})", search_words(search)),
