@@ -112,7 +112,8 @@ def conform(
         Programs, or the paper's bisection.
     explain
         Tolerances, rad and rad/s, within which a motion of the model itself is searched for near
-        each recording. The default is not to, but for models that are not linear.
+        each recording. By default, it is searched for near the recordings that decide the sets of
+        a model that is not linear.
     until
         Samples later than this many seconds after the first are not used.
     horizon

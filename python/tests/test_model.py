@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import pickle
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -128,6 +130,35 @@ def test_paths_give_the_files_of_the_command(
     shorter = rt.model(rt.Robot.load(file), settings=out / "choices.toml", horizon=0.05)
     assert shorter.horizon == 0.05
     assert json.loads(json.dumps(shorter.to_dict()))["horizon"] == 0.05
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+@pytest.mark.skipif("REACHTUBE" not in os.environ, reason="needs the command")
+def test_the_files_are_those_of_the_command_byte_for_byte(
+    arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
+) -> None:
+    folder, file = tmp_path / "logs", tmp_path / "arm.toml"
+    folder.mkdir()
+    for run in logs:
+        write_csv(folder, [rt.Run(run.t, run.q, run.qd, run.tau)])
+        (folder / "1.csv").rename(folder / f"{run.name}.csv")
+    (folder / "runs.csv").unlink()
+    arm.save(file)
+    rt.model(rt.Robot.load(file), folder, "motor", horizon=0.1).save(tmp_path / "python")
+    command = [os.environ["REACHTUBE"], "model", "--robot", str(file), "--data", str(folder)]
+    command += ["--torque", "motor", "--horizon", "0.1", "--out", str(tmp_path / "command")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    # 3 says that the model is not accepted.
+    assert done.returncode in (0, 3), done.stderr
+    for name in ["model.json", "robot.toml", "page/report.html", "held-out/report.html"]:
+        ours, theirs = [(tmp_path / by / name).read_bytes() for by in ("python", "command")]
+        assert ours == theirs, name
+    # Python's choices name no robot, which is an argument there.
+    ours, theirs = [
+        (tmp_path / by / "choices.toml").read_text().splitlines() for by in ("python", "command")
+    ]
+    differ = [line for line in theirs if line not in ours]
+    assert [line.split()[0] for line in differ] == ["robot", "#"], differ
 
 
 def test_conform_cuts_logs_at_a_horizon(arm: rt.Robot, logs: list[rt.Run]) -> None:

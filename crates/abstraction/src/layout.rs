@@ -18,7 +18,7 @@ pub struct Layout {
 impl Layout {
     /// Returns the layout of a model of `joints` joints.
     #[must_use]
-    pub fn new(kind: ModelKind, joints: usize) -> Self {
+    pub(crate) fn new(kind: ModelKind, joints: usize) -> Self {
         Self { joints, trigonometric: kind != ModelKind::One }
     }
 
@@ -30,38 +30,38 @@ impl Layout {
 
     /// Returns the number of states: 2n for (q, q̇), or 4n for (q, q̇, sin q, cos q).
     #[must_use]
-    pub fn states(self) -> usize {
+    pub(crate) fn states(self) -> usize {
         if self.trigonometric { 4 * self.joints } else { 2 * self.joints }
     }
 
     /// Returns the index of q̇ of joint `i` (from 0) among the variables.
     #[must_use]
-    pub fn velocity(self, i: usize) -> usize {
+    pub(crate) fn velocity(self, i: usize) -> usize {
         i
     }
 
     /// Returns the index of sin q of joint `i` (from 0), for trigonometric models.
     #[must_use]
-    pub fn sine(self, i: usize) -> usize {
+    pub(crate) fn sine(self, i: usize) -> usize {
         self.joints + i
     }
 
     /// Returns the index of cos q of joint `i` (from 0), for trigonometric models.
     #[must_use]
-    pub fn cosine(self, i: usize) -> usize {
+    pub(crate) fn cosine(self, i: usize) -> usize {
         2 * self.joints + i
     }
 
     /// Returns the index of u of joint `i` (from 0) among the variables.
     #[must_use]
-    pub fn input(self, i: usize) -> usize {
+    pub(crate) fn input(self, i: usize) -> usize {
         self.variables() - self.joints + i
     }
 
     /// Returns the names of the variables for joints of these kinds: qd1, .., s1, .., c1, .., u1,
     /// ..; a prismatic joint 1 has q1 and one1 in place of s1 and c1.
     #[must_use]
-    pub fn names(self, kinds: &[JointKind]) -> Vec<String> {
+    pub(crate) fn names(self, kinds: &[JointKind]) -> Vec<String> {
         let [qd, sine, cosine, u] = [["qd"; 2], ["s", "q"], ["c", "one"], ["u"; 2]];
         let groups = if self.trigonometric { vec![qd, sine, cosine, u] } else { vec![qd, u] };
         let name = |[revolute, prismatic]: [&str; 2], i: usize| match kinds[i] {

@@ -25,7 +25,10 @@ impl OpenedCheck {
     /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
     /// judged by `notion`, or by the notion in the file.
     pub(crate) fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {
-        let (model, setup) = Model::open(&args.model)?;
+        let (mut model, setup) = Model::open(&args.model)?;
+        // Models that were written later are counted too; the digest stays the file's.
+        Model { trust: model.trust, calibration: model.calibration, .. } =
+            model.clone().among_others(&args.model);
         Self::with(model, setup, &args.data, notion, keep)
     }
 
@@ -38,12 +41,6 @@ impl OpenedCheck {
         keep: Keep,
     ) -> Result<Self> {
         let settings = setup.settings();
-        if let (None, Some(until)) = (args.until, settings.until) {
-            output::note(&format!(
-                "samples later than {until} s after the first are not used, as when the sets were \
-                 found; --until changes the limit"
-            ));
-        }
         let expected = model.preparation.as_ref().map_or(settings.torque, |known| known.torque);
         if let Some(given) = args.torque.filter(|given| *given != expected) {
             let [given, model] =
@@ -67,6 +64,18 @@ impl OpenedCheck {
         let bar = Progress::new();
         let conform::Opened { model, problem, tube } = job.open(&bar)?;
         Ok(Self { model, problem, tube })
+    }
+
+    /// Prints notes on the recordings, and up to which time they are used if that is the model's
+    /// limit. A check says it in its verdict.
+    pub(crate) fn print_notes(&self, args: &DataArguments) {
+        if let (None, Some(until)) = (args.until, self.model.settings.until) {
+            output::note(&format!(
+                "samples later than {until} s after the first are not used, as when the sets were \
+                 found; --until changes the limit"
+            ));
+        }
+        output::notes(&self.problem.recordings().notes);
     }
 
     /// Returns each suite, or run with a nominal motion of its own, as exports take it.

@@ -10,6 +10,7 @@ use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::fit::fit::fit;
 use crate::fit::group::FitSettings;
+use crate::fit::record::FitRecord;
 use crate::model::file::Model;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
@@ -49,12 +50,16 @@ impl Answer {
             }
         };
         let found = conform(&problem, progress, resume)?;
-        let model = Model::new(&problem, &found);
-        let model = match record {
+        Ok(Self { model: Self::model(&problem, &found, record), problem, found })
+    }
+
+    /// Returns the model of what was found, with the record of a fit.
+    fn model(problem: &Problem, found: &Conformance, record: Option<FitRecord>) -> Model {
+        let model = Model::new(problem, found);
+        match record {
             Some(record) => model.with_fit(record),
             None => model,
-        };
-        Ok(Self { model, problem, found })
+        }
     }
 
     /// Finds the smallest sets for the problem of a fold whose points `server` asks.
@@ -69,6 +74,18 @@ impl Answer {
     ) -> Result<Self> {
         let found = conform_elsewhere(&problem, server, progress)?;
         Ok(Self { model: Model::new(&problem, &found), problem, found })
+    }
+
+    /// Adds radii to X0 and U, 3n, rad, rad/s and N m, and proves the wider sets: an allowance for
+    /// motions that were not recorded.
+    ///
+    /// # Errors
+    ///
+    /// As [`conform`](crate::conform()).
+    pub fn widened(self, allowance: Vec<f64>) -> Result<Self> {
+        let Self { problem, found, model } = self;
+        let found = found.widened(&problem, allowance)?;
+        Ok(Self { model: Self::model(&problem, &found, model.fit), problem, found })
     }
 
     /// Returns whether the sets were proved to enclose every recording.

@@ -8,6 +8,7 @@ use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
 use crate::error::Result;
 use crate::model::file::Model;
+use crate::model::provenance::Provenance;
 use crate::next_motion::growth::Growth;
 use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
@@ -16,6 +17,15 @@ use crate::result::code::Code;
 use crate::result::finding::Finding;
 use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
+
+/// Findings about the recordings, which come last.
+const NOTED: [Code; 5] = [
+    Code::OtherRecordings,
+    Code::Recordings,
+    Code::UseUnknown,
+    Code::FrictionRange,
+    Code::OtherStart,
+];
 
 /// The answer of a check.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -36,6 +46,9 @@ pub struct Check {
     pub growth: Option<Growth>,
     /// What a user should know about the data.
     pub notes: Vec<String>,
+    /// What the verdict is about: model, settings in force, and recordings.
+    #[serde(flatten)]
+    pub provenance: Provenance,
     /// What the answer says, statement by statement: the verdict first.
     pub findings: Vec<Finding>,
 }
@@ -104,8 +117,12 @@ impl Check {
     /// Adds to a verdict what it says about the next motion.
     #[must_use]
     pub fn new(model: &Model, problem: &Problem, verdict: Verdict) -> Self {
-        let recordings = problem.recordings();
-        let is_used = model.knows_of(recordings);
+        let (recordings, provenance) = (problem.recordings(), model.provenance(problem));
+        let other = model.other_data(problem, &provenance.data);
+        let is_used = match &other {
+            Some(other) if other.starts_alike => Some(true),
+            _ => model.knows_of(recordings),
+        };
         let is_held_out = is_used == Some(false);
         let trust = is_held_out.then(|| Trust::of_check(recordings, &verdict));
         let rates = is_held_out.then(|| Rates::new(recordings, &verdict));
@@ -115,6 +132,7 @@ impl Check {
         noted.extend(friction_warning(problem).as_ref().map(Finding::from));
         let starts_elsewhere =
             recordings.suites.iter().filter(|suite| !may_start_near(model, suite));
+        let other = other.as_ref().map(Finding::other_recordings);
         noted.extend(starts_elsewhere.map(|suite| Finding::other_start(&suite.entry.name)));
         Self {
             notes: noted.iter().map(|finding| finding.text.clone()).collect(),
@@ -123,7 +141,8 @@ impl Check {
             rates,
             worst_by_state: Vec::new(),
             growth: None,
-            findings: noted,
+            provenance,
+            findings: noted.into_iter().chain(other).collect(),
         }
         .with_findings(model)
     }
@@ -138,7 +157,7 @@ impl Check {
     fn with_findings(mut self, model: &Model) -> Self {
         let (verdict, kinds) = (&self.verdict, model.robot.kinds());
         let set = verdict.enclosure.set_name();
-        let mut findings = vec![Finding::verdict_of_check(verdict)];
+        let mut findings = vec![Finding::verdict_of_check(verdict, &self.provenance.settings)];
         findings.extend(Finding::vacuous(model));
         if let Some(points) = &verdict.points {
             let are_lost = !verdict.lost.is_empty();
@@ -159,8 +178,7 @@ impl Check {
         });
         findings.extend(self.rates.as_ref().map(Finding::held_out_rates));
         findings.extend(Finding::reach_of_proof(verdict, model.settings.states));
-        let noted = [Code::Recordings, Code::UseUnknown, Code::FrictionRange, Code::OtherStart];
-        findings.extend(self.findings.into_iter().filter(|f| noted.contains(&f.code)));
+        findings.extend(self.findings.into_iter().filter(|found| NOTED.contains(&found.code)));
         self.findings = findings;
         self
     }

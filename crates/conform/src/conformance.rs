@@ -1,5 +1,6 @@
 //! The whole of a conformance: from a problem to sets that were proved to enclose its recordings.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::claim::claim::Claim;
@@ -7,16 +8,20 @@ use crate::claim::notion::claim;
 use crate::claim::remote::PointServer;
 use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
+use crate::data::settings::check_allowance;
 use crate::error::Result;
-use crate::explain::explanation::{Explanation, explain};
+use crate::explain::explanation::{Explanation, explain_some};
+use crate::next_motion::allowance::allowance_for;
 use crate::next_motion::any_run::AnyRun;
-use crate::next_motion::calibration::{Calibration, calibrate};
+use crate::next_motion::calibration::{Calibration, calibrate, not_smallest};
 use crate::next_motion::deciding_runs::DecidingRuns;
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
 use crate::nominal::input_error::InputError;
 use crate::plausibility::{NominalFit, Usefulness, Warning, warnings};
+use crate::program::program::Program;
 use crate::progress::Progress;
 use crate::search::found::{Found, SearchSummary};
 use crate::search::optimality::LARGEST_GAP;
@@ -53,6 +58,13 @@ pub struct Conformance {
     /// The sets without each of the motions they were found on; none for one motion, for a
     /// bisection, and for other notions than the hull.
     pub left_out: Vec<LeftOut>,
+    /// The radii that have to be added to X0 and U, 3n, so that the sets without each of the
+    /// motions enclose it; zero where they do. Radii of U are in proportion to the error of the
+    /// input, and radii of X0 to X0; they are 0 where the noise of the sensors limits X0. `None`
+    /// without such motions, if no radii suffice, and for a model that is not linear.
+    pub allowance_needed: Option<Vec<f64>>,
+    /// The radii that were added to the smallest X0 and U, 3n; empty if none were.
+    pub allowance: Vec<f64>,
     /// The runs that decide the sets.
     pub deciding_runs: DecidingRuns,
     /// The joints whose motion follows the order of the runs.
@@ -62,7 +74,8 @@ pub struct Conformance {
     /// The recorded values that touch the reachable set, the closest first; the linearised set
     /// where the model is not linear.
     pub tight: Vec<Witness>,
-    /// How close a motion of the model comes to each run, where the settings ask for it.
+    /// How close a motion of the model comes to each run, or to each that decides the sets, where
+    /// the settings ask for it.
     pub explanations: Vec<Explanation>,
     /// Implausible results, and the most likely cause.
     pub warnings: Vec<Warning>,
@@ -134,8 +147,19 @@ fn conform_claim(
         let (found, calibration) = calibrate(problem, progress, resume)?;
         (found, Some(calibration))
     };
+    judged(problem, found, calibration, Vec::new())
+}
+
+/// Proves sets that were found, and says what they say.
+fn judged(
+    problem: &Problem,
+    found: Found,
+    calibration: Option<Calibration>,
+    allowance: Vec<f64>,
+) -> Result<Conformance> {
     let Found { tube, cost, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
+    let LeftOutMotions { each: left_out, missing } = left_out;
     let mut tight = found.touching;
     let mut radii = vec![0.0f64; 2 * problem.joints()];
     let verdict = Verdict::visiting(problem, &tube, |row| {
@@ -144,14 +168,18 @@ fn conform_claim(
         tight.extend(decide.map(|edge| Witness::new(problem, row, edge)));
     })?;
     tight.sort_by(|a, b| b.excess.total_cmp(&a.excess));
-    let explanations = match problem.settings().explain {
-        Some(_) => explain(problem, &tube.sets)?,
-        None => Vec::new(),
-    };
+    let explanations = explanations(problem, &tube.sets, &tight)?;
     let fit = NominalFit::new(problem)?;
     let input_error = InputError::of_problem(problem)?;
+    let allowance_needed =
+        missing.and_then(|missing| allowance_for(problem, &tube.sets, &input_error, &missing));
     let warnings = warnings(problem, &tube.sets, &radii, &fit, &input_error, calibration.as_ref())?;
-    let is_smallest = calibration.is_none() && !problem.settings().notion.asks_points();
+    let trust = match allowance.is_empty() {
+        true => trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant),
+        false => Trust::with_allowance(problem.recordings()),
+    };
+    let is_as_found = calibration.is_none() && allowance.is_empty();
+    let is_smallest = is_as_found && !problem.settings().notion.asks_points();
     Ok(Conformance {
         sets: tube.sets.clone(),
         warnings,
@@ -162,19 +190,59 @@ fn conform_claim(
         optimality_gap,
         paper_cost,
         hull_volume,
-        trust: trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant),
+        trust,
         verdict,
         deciding_runs: DecidingRuns::new(problem, &tight, is_smallest.then_some(cost))?,
         trends: trends(problem),
         calibration,
         left_out,
+        allowance_needed,
+        allowance,
         search,
         tight,
         explanations,
         input_error,
-        any_run: if problem.settings().calibrate.is_empty() { AnyRun::new(problem)? } else { None },
+        any_run: if is_as_found { AnyRun::new(problem)? } else { None },
         tube,
     })
+}
+
+/// Explains the runs that decide the sets, or all, if the settings ask for it.
+fn explanations(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    tight: &[Witness],
+) -> Result<Vec<Explanation>> {
+    if problem.settings().explain.is_none() {
+        return Ok(Vec::new());
+    }
+    let deciding: BTreeSet<&str> = tight.iter().map(|witness| &*witness.run).collect();
+    let decides = |run| deciding.contains(&*problem.entry(run).file);
+    let all = problem.setup().explains_all;
+    explain_some(problem, sets, |run| all || decides(run))
+}
+
+impl Conformance {
+    /// Adds radii to X0 and U, 3n, and proves the wider sets. They are not the smallest.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`conform`].
+    ///
+    /// # Errors
+    ///
+    /// As [`conform`]; an allowance that is not 3n radii.
+    pub(crate) fn widened(self, problem: &Problem, allowance: Vec<f64>) -> Result<Self> {
+        check_allowance(&allowance, problem.joints())?;
+        let sets = self.sets.widened(&allowance);
+        let left_out = LeftOutMotions { each: self.left_out, missing: None };
+        let linear = problem.dynamics().linear_system();
+        let program = linear.map(|_| Program::of_problem(problem)).transpose()?;
+        let scale = program.as_ref().map(Program::scale);
+        let found = Found { left_out, search: self.search, ..not_smallest(problem, &sets, scale)? };
+        let allowance_needed = self.allowance_needed;
+        Ok(Self { allowance_needed, ..judged(problem, found, self.calibration, allowance)? })
+    }
 }
 
 /// Returns what may be expected of motions that were not recorded.
@@ -187,9 +255,9 @@ fn trust(
 ) -> Trust {
     let recordings = problem.recordings();
     match (calibration, optimality_gap) {
-        (Some(calibration), _) => Trust::of_calibration(recordings, calibration, is_proved),
+        (Some(calibration), _) => Trust::of_calibration(problem, calibration, is_proved),
         (None, Some(gap)) if gap > LARGEST_GAP => Trust::without_optimum(recordings, gap),
         _ if problem.setup().correction.is_some() => Trust::of_fitted_nominal(recordings),
-        _ => Trust::of_fit(recordings, tight),
+        _ => Trust::of_fit(problem, tight),
     }
 }

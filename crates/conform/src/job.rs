@@ -92,15 +92,16 @@ impl Basis {
         })
     }
 
-    /// Makes the setup of a conformance. Explanations are searched for within `explain`; where that
-    /// was not chosen, for models that are not linear only: the verdict on an outer enclosure needs
-    /// them more, and their cost is small beside the search for the sets.
+    /// Makes the setup of a conformance. Explanations of all runs are searched for within
+    /// `explain`. If that was not chosen, the runs that decide the sets of a model that is not
+    /// linear are explained: the verdict on an outer enclosure needs it more, and the cost does not
+    /// grow with the runs.
     ///
     /// # Errors
     ///
     /// As [`Setup::new`] and [`Setup::with_abstraction`]; a robot that is not physical.
     pub fn setup(self, settings: Settings, explain: Option<Option<Tolerance>>) -> Result<Setup> {
-        let mut setup = match self {
+        let setup = match self {
             Self::Robot(robot) => {
                 robot.check_physical()?;
                 Setup::new(*robot, settings)?
@@ -112,8 +113,11 @@ impl Basis {
             }
         };
         let is_linear = setup.dynamics.linear_system().is_some();
-        setup.settings.explain = explain.unwrap_or_else(|| (!is_linear).then(Tolerance::default));
-        Ok(setup)
+        Ok(match explain {
+            Some(tolerance) => setup.explain(tolerance),
+            None if is_linear => setup.explain(None),
+            None => setup.explain_deciding(),
+        })
     }
 }
 
@@ -161,7 +165,8 @@ impl Job {
         self
     }
 
-    /// Searches for a motion of the model near each recording, or for none.
+    /// Searches for a motion of the model near each recording, or for none. By default, a model
+    /// that is not linear has one for each recording that decides its sets.
     #[must_use]
     pub fn explain(self, tolerance: Option<Tolerance>) -> Self {
         Self { explain: Some(tolerance), ..self }

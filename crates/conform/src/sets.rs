@@ -35,6 +35,16 @@ impl UncertaintySets {
         if input_only { self.with_input_scaled(factor) } else { self.inflated(factor, 0.0) }
     }
 
+    /// Returns the sets with radii added to X0 and U, 3n, rounded to nearest.
+    #[must_use]
+    pub(crate) fn widened(&self, allowance: &[f64]) -> Self {
+        let mut wider = self.clone();
+        let UncertaintySets { initial_set, input_set, .. } = &mut wider;
+        let radii = initial_set.radius.iter_mut().chain(&mut input_set.radius);
+        radii.zip(allowance).for_each(|(radius, more)| *radius += more);
+        wider
+    }
+
     /// All radii times `factor` plus `term`, both rounded to nearest. The radius of V is left
     /// alone: where it is known it must stay.
     pub(crate) fn inflated(&self, factor: f64, term: f64) -> Self {

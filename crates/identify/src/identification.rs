@@ -175,8 +175,8 @@ fn fit_laws(
     Ok((warming, laws))
 }
 
-/// Writes the laws of warming up, the standard errors of friction, and the velocities that it was
-/// fitted to into the description.
+/// Writes the laws of warming up, the standard errors of friction, the velocities that it was
+/// fitted to, and the recordings of all fits into the description.
 fn add_friction(
     description: &mut RobotDescription,
     inputs: &Inputs,
@@ -184,6 +184,7 @@ fn add_friction(
     slow: &[FrictionFit],
     inertia: &InertiaFit,
 ) {
+    description.add_identified_from(inputs.seen.iter().cloned());
     for (joint, law) in description.joints.iter_mut().zip(&inputs.sampling.laws) {
         joint.friction.warming = *law;
     }

@@ -52,6 +52,8 @@ pub(crate) struct Inputs {
     pub changes: Vec<String>,
     /// Warnings about the recordings.
     pub warnings: Vec<String>,
+    /// SHA-256 of the recordings that parameters are fitted to.
+    pub seen: Vec<String>,
 }
 
 impl Inputs {
@@ -104,20 +106,22 @@ impl Inputs {
             velocities: velocities(&moving, robot.joint_count()),
         };
         notes.extend(described_changes(samples, &changes, prepare, cut_off));
-        let mut changes = notes;
-        if short > 0 {
-            changes.push(format!(
-                "{short} recordings were left out: they are too short for a low-pass of \
-                 {cut_off:.2} Hz"
-            ));
-        }
-        let is_thinned = |log: &PreparedLog| sampling.stride(log) > 1;
-        let is_thinned = friction.iter().chain(&dynamic).any(is_thinned);
-        changes.push(described(&sampling, is_thinned, robot));
-        changes.extend(thinning(&dynamic, strides[2], &sampling));
+        notes.extend(too_short(short, cut_off));
+        notes.push(described(&sampling, &moving, robot));
+        notes.extend(thinning(&dynamic, strides[2], &sampling));
         let warnings = velocity_warnings(robot, &all);
         let compensated = settings.dynamic.iter().any(LogEntry::is_compensated);
-        Ok(Self { rest, friction, dynamic, validate, sampling, compensated, changes, warnings })
+        Ok(Self {
+            rest,
+            friction,
+            dynamic,
+            validate,
+            sampling,
+            compensated,
+            changes: notes,
+            warnings,
+            seen: fitted.iter().map(|survey| survey.sha256.clone()).collect(),
+        })
     }
 
     /// Returns whether there are validation recordings, and the recordings for the validation:
@@ -176,8 +180,19 @@ fn thinning(dynamic: &[PreparedLog], stride: usize, sampling: &Sampling) -> Opti
     })
 }
 
-/// Describes the sampling in a sentence. A rate above half the recordings' own takes all samples.
-fn described(sampling: &Sampling, is_thinned: bool, robot: &Robot) -> String {
+/// Describes in a sentence how many recordings were left out, if some were.
+fn too_short(count: usize, cut_off: f64) -> Option<String> {
+    (count > 0).then(|| {
+        format!(
+            "{count} recordings were left out: they are too short for a low-pass of {cut_off:.2} Hz"
+        )
+    })
+}
+
+/// Describes the sampling of the moving recordings in a sentence. A rate above half the recordings'
+/// own takes all samples.
+fn described(sampling: &Sampling, moving: &[&PreparedLog], robot: &Robot) -> String {
+    let is_thinned = moving.iter().any(|log| sampling.stride(log) > 1);
     let slow: Vec<String> = sampling.slow.iter().map(|slow| format!("{slow:.3}")).collect();
     format!(
         "{}; the torque of a joint is not used within {:.0} ms of a sample in which the joint is \

@@ -48,7 +48,7 @@ impl LogFiles {
 
     /// Returns the path for messages: of the only or the first file.
     #[must_use]
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         match self {
             Self::Csv(files) => &files[0],
             Self::Container(path) => path,

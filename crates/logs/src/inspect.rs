@@ -149,6 +149,7 @@ fn entry(path: &Path, line: u64, content: &Content) -> RunEntry {
         sha256: None,
         simulated: false,
         noise: None,
+        origin: None,
         order: line,
         line,
     }

@@ -135,12 +135,6 @@ impl Log {
         Ok(Self { path, joints, topics, samples, values, markers, notes, losses, time, unused })
     }
 
-    /// Returns the path of the log.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Returns the topics of joint states that were read.
     #[must_use]
     pub fn topics(&self) -> &[String] {

@@ -62,7 +62,14 @@ impl<S: Scalar> RungeKutta4<S> {
     /// # Panics
     ///
     /// Panics where the length of x differs from the dimension of the integrator.
-    pub fn step<F: VectorField<S>>(&mut self, field: &mut F, t: f64, h: f64, x: &mut [S], u: &[S]) {
+    pub(crate) fn step<F: VectorField<S>>(
+        &mut self,
+        field: &mut F,
+        t: f64,
+        h: f64,
+        x: &mut [S],
+        u: &[S],
+    ) {
         assert_eq!(
             x.len(),
             self.stage.len(),

@@ -1,5 +1,6 @@
 //! Assembly of a page from a model and recordings.
 
+use reachtube_conform::model::Provenance;
 use reachtube_conform::result::Code;
 use reachtube_conform::settings::{Equations, States};
 use reachtube_conform::{Finding, Model};
@@ -45,7 +46,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
         phase_planes: phase_planes(problem, model)?,
         nominal: nominal_tables(model),
         sets: vec![sets_table(model)],
-        facts: [nominal_facts(model), facts(model)].concat(),
+        facts: [nominal_facts(model), facts(model), compared(sources)].concat(),
         trust: trust(sources),
         caution: caution(sources),
         notes: check.notes.clone(),
@@ -105,6 +106,9 @@ fn sets_table(model: &Model) -> SetsTable {
     SetsTable { notion: notion.into(), joints: (0..n).map(row).collect() }
 }
 
+/// The name of the radii that were added to the sets.
+const ALLOWANCE: &str = "Allowance added to the smallest X0, then U [SI units]";
+
 fn facts(model: &Model) -> Vec<(String, String)> {
     let settings = &model.settings;
     let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
@@ -143,10 +147,34 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("Fitted to", format!("{runs} runs of suites {}", suites.join(", "))),
         ("SHA-256 of the data", model.data.sha256.clone()),
         ("Written by", model.tool.clone()),
+        ("SHA-256 of the model", model.sha256.clone()),
     ]
     .into_iter()
+    .chain((!model.allowance.is_empty()).then(|| (ALLOWANCE, word(&model.allowance))))
     .map(|(name, value)| (name.to_string(), value))
     .collect()
+}
+
+/// Returns what of the verdict is not the model's own: the recordings, the notion, and the end of
+/// the recordings.
+fn compared(sources: &Sources) -> Vec<(String, String)> {
+    let Sources { model, check, .. } = *sources;
+    let Provenance { settings, data, .. } = &check.provenance;
+    let mut facts = Vec::new();
+    let mut add = |name: &str, value: String| facts.push((name.to_string(), value));
+    if let Some(until) = settings.until {
+        add("Samples used", format!("up to {until} s after the first"));
+    }
+    if settings.notion != model.settings.notion {
+        add("Notion of this verdict", word(settings.notion));
+    }
+    if data.sha256 != model.data.sha256 {
+        let suites: Vec<&str> = data.suites.iter().map(|suite| suite.name.as_str()).collect();
+        let runs = data.run_count();
+        add("Compared with", format!("{runs} runs of suites {}", suites.join(", ")));
+        add("SHA-256 of these recordings", data.sha256.clone());
+    }
+    facts
 }
 
 /// Returns a setting in the word that the model file has for it.

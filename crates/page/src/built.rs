@@ -27,7 +27,11 @@ pub const TO_OWN: &str = "the recordings that the model was made of";
 /// As [`page`](fn@crate::page), and as [`CheckJob::open`](reachtube_conform::CheckJob::open).
 pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
     let all = built.answer.model.data.run_count();
-    let which = format!(", an excerpt of {all} with the ten that decide the sets most");
+    // No recording decides sets with an allowance.
+    let which = match built.answer.model.allowance.is_empty() {
+        true => format!(", an excerpt of {all} with the ten that decide the sets most"),
+        false => format!(", an excerpt of {all}"),
+    };
     let mut own = excerpt(built, &built.shown, &which)?;
     of_built(built, &mut own.lead);
     own.verdict.words = as_sentence(&built.verdict());

@@ -50,6 +50,7 @@ pub(super) fn lead(sources: &Sources) -> Result<Lead> {
 pub(super) fn of_built(built: &Built, lead: &mut Lead) {
     lead.facts = facts_of_sets(&built.answer.model);
     lead.facts.push(("Held out".into(), built.held_out_words()));
+    lead.facts.extend(built.allowance_words().map(|words| ("Allowance".into(), words)));
     lead.facts.push(("New motions".into(), built.held_out.next_motion.clone()));
     if let Some((figure, caption)) = over_horizons(built) {
         (lead.figure, lead.caption) = (Some(figure), caption);

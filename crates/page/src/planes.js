@@ -51,6 +51,8 @@ function watchPlanes() {
     place, planeTraces(charts[at], at), planeLayout(charts[at], width),
     {
       displaylogo: false,
+      // On a narrow screen the buttons would cover the title.
+      displayModeBar: document.documentElement.clientWidth >= NARROW && "hover",
       modeBarButtonsToRemove: ["select2d", "lasso2d", "zoomIn2d", "zoomOut2d"],
     },
   );

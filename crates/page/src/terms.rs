@@ -5,7 +5,8 @@ use maud::{Markup, Render, html};
 use super::text::clean;
 
 /// The terms and their explanations. A term of capital letters is found as it is written.
-const TERMS: [(&str, &str); 20] = [
+const TERMS: [(&str, &str); 21] = [
+    ("allowance", "radii that were added to the smallest sets for motions not recorded"),
     (
         "conformant",
         "every recording was proved to lie in the model's reachable set, at its samples",

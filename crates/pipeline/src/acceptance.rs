@@ -23,7 +23,7 @@ impl Built {
 
     /// Returns the factor by which a joint's set may have to grow for motions that were held out.
     #[must_use]
-    pub fn largest_growth(&self) -> f64 {
+    pub(crate) fn largest_growth(&self) -> f64 {
         self.choices.largest_growth.unwrap_or(LARGEST_GROWTH)
     }
 

@@ -1,4 +1,3 @@
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use reachtube_conform::settings::{Equations, NominalStart};
@@ -7,6 +6,7 @@ use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
+use crate::allowance::Widened;
 use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_RATIO};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
@@ -123,8 +123,16 @@ impl Decided<'_> {
         let mut findings = unless_accepted(findings, given);
         findings.extend(unknown_motors(&robot, torque));
         let mut trial = Trial { robot: robot.clone(), ..trial.clone() };
-        let (motions, from_start) = (motion_names(split), torque == Torque::Compensated);
-        let recordings = Prepared { logs: &logs, motions: &motions, from_start, simulated };
+        let (motions, from_start) = (split.motion_names(), torque == Torque::Compensated);
+        let parts = split.parts();
+        let recordings = Prepared {
+            logs: &logs,
+            motions: &motions,
+            parts: parts.as_ref(),
+            from_start,
+            simulated,
+            origins: None,
+        };
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
         let choices = &chooser.choices;
@@ -201,9 +209,18 @@ fn first_choices<'a, 'b: 'a>(
     let equations = given.equations.unwrap_or(Equations::Robot);
     let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
     let robot = robot.clone();
-    let (fit, progress) = (None, chooser.progress);
-    let trial =
-        Trial { robot, expansion, sensor_noise, equations, nominal, fit, progress, journal };
+    let (allowance, fit, progress) = (given.allowance, None, chooser.progress);
+    let trial = Trial {
+        robot,
+        expansion,
+        sensor_noise,
+        equations,
+        nominal,
+        allowance,
+        fit,
+        progress,
+        journal,
+    };
     Ok((trial, cut_off))
 }
 
@@ -233,20 +250,22 @@ fn sets(
         trial.fit = fit;
         horizons = try_horizons(trial, recordings)?;
     }
-    let (answer, horizon, reason) = match chooser.choices.horizon {
+    let (found, horizon, reason) = match chooser.choices.horizon {
         Some(horizon) => {
-            let answer = trial.run(recordings.cut(horizon, usize::MAX)?)?;
-            (answer, horizon, "given".to_string())
+            let found = Widened::new(trial, recordings, horizon, usize::MAX)?;
+            (found, horizon, "given".to_string())
         }
         None => {
-            let (answer, horizon) = longest_of_all(trial, recordings, &horizons, largest)?;
-            let reason = reason_of_horizon(&answer, horizon, &horizons, largest);
-            (answer, horizon, reason)
+            let (found, horizon) = longest_of_all(trial, recordings, &horizons, largest)?;
+            let reason = reason_of_horizon(&found.answer, horizon, &horizons, largest);
+            (found, horizon, reason)
         }
     };
     chooser.choose("horizon", format!("{horizon} s"), reason);
     chooser.choices.horizon = Some(horizon);
-    Ok((answer, horizons))
+    chooser.choose("allowance", found.words(), &found.reason);
+    chooser.choices.allowance = Some(found.allowance);
+    Ok((found.answer, horizons))
 }
 
 /// Finds the sets over all windows of the longest horizon at which none is wider beside the motion
@@ -257,10 +276,10 @@ fn longest_of_all(
     recordings: &Prepared,
     tried: &[HorizonWidths],
     largest: f64,
-) -> Result<(Answer, f64)> {
+) -> Result<(Widened, f64)> {
     let mut horizon = longest(tried, largest).horizon;
     loop {
-        let run = || trial.run(recordings.cut(horizon, usize::MAX)?);
+        let run = || Widened::new(trial, recordings, horizon, usize::MAX);
         let shorter = tried.iter().rev().find(|other| other.horizon < horizon);
         let Some(shorter) = shorter.filter(|shorter| shorter.worst().1 <= largest) else {
             return Ok((run()?, horizon));
@@ -269,13 +288,13 @@ fn longest_of_all(
         let mut found = None;
         let name = format!("{horizon} s, all windows, {}", trial.name());
         let is_narrow = trial.journal.step(&name, || {
-            let answer = run()?;
-            let is_narrow = worst(&answer).1 <= largest;
-            found = Some(answer);
+            let widened = run()?;
+            let is_narrow = worst(&widened.answer).1 <= largest;
+            found = Some(widened);
             Ok(is_narrow)
         })?;
         match (is_narrow, found) {
-            (true, Some(answer)) => return Ok((answer, horizon)),
+            (true, Some(widened)) => return Ok((widened, horizon)),
             (true, None) => return Ok((run()?, horizon)),
             (false, _) => horizon = shorter.horizon,
         }
@@ -345,11 +364,6 @@ fn preparation(choices: &Choices, torque: Torque) -> Preparation {
         columns: choices.columns.clone(),
         log: choices.log.clone(),
     }
-}
-
-fn motion_names(split: &Split) -> BTreeMap<String, String> {
-    let all = split.kept.iter().chain(&split.held_out);
-    all.map(|recording| (recording.log.name.clone(), recording.motion.clone())).collect()
 }
 
 fn reason_of_horizon(

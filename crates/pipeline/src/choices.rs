@@ -71,6 +71,10 @@ pub struct Choices {
     /// Time up to which the model predicts, s: the length of the windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horizon: Option<f64>,
+    /// What is added to the radii of the smallest X0 and U, 3n, rad, rad/s and N m, for motions
+    /// that were not recorded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub allowance: Option<Vec<f64>>,
     /// Parameters of the nominal model that are fitted for small sets.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fit: Option<Vec<Group>>,
@@ -194,6 +198,7 @@ impl Choices {
             largest_growth: given.largest_growth.or(self.largest_growth),
             largest_outside: given.largest_outside.or(self.largest_outside),
             horizon: given.horizon.or(self.horizon),
+            allowance: given.allowance.or(self.allowance),
             fit: given.fit.or(self.fit),
             pull: given.pull.or(self.pull),
             lock: filled(given.lock, self.lock),

@@ -67,7 +67,7 @@ impl Compared {
 impl HeldOut {
     /// Returns the part of the rows that lies outside the sets.
     #[must_use]
-    pub fn part_outside(&self) -> f64 {
+    pub(crate) fn part_outside(&self) -> f64 {
         self.outside as f64 / self.rows.max(1) as f64
     }
 

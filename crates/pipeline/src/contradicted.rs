@@ -15,7 +15,7 @@ impl Built {
 
     /// Returns the contradiction for which the model is not acceptable, if there is one.
     #[must_use]
-    pub fn contradiction(&self) -> Option<&Finding> {
+    pub(crate) fn contradiction(&self) -> Option<&Finding> {
         self.findings.iter().find(|finding| finding.severity == Severity::Failure)
     }
 }

@@ -9,7 +9,7 @@ use reachtube_recordings::{
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::sorted::index_names;
+use crate::sorted::{index_names, origins_of};
 use crate::windows::Prepared;
 
 /// Logs that were cut into windows, and what was done to them.
@@ -62,7 +62,16 @@ impl Cut {
         };
         let motions = index_names(paths, &raw);
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        let prepared = Prepared { logs: &logs, motions: &motions, from_start: false, simulated };
+        let origins = &origins_of(&raw);
+        let origins = Some(origins);
+        let prepared = Prepared {
+            logs: &logs,
+            motions: &motions,
+            parts: None,
+            from_start: false,
+            simulated,
+            origins,
+        };
         let windows = prepared.cut(horizon, usize::MAX)?;
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));

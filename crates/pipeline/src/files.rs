@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use reachtube_conform::model::Provenance;
 use reachtube_files::MARK;
 use serde_json::{Value, json};
 
@@ -12,6 +13,7 @@ impl Built {
     /// Returns the answer as JSON, as docs/output.schema.json describes it.
     #[must_use]
     pub fn to_json(&self) -> Value {
+        let Provenance { tool, model_sha256, settings, data } = self.answer.model.own_provenance();
         json!({
             "useful": self.is_useful(),
             "conformant": self.answer.holds(),
@@ -29,7 +31,12 @@ impl Built {
                 "horizon": widths.horizon, "ratios": widths.ratios, "reason": widths.reason,
             })).collect::<Vec<Value>>(),
             "choices": self.made,
+            "claim": self.answer.model.proof.claim,
             "findings": self.all_findings(),
+            "tool": tool,
+            "model_sha256": model_sha256,
+            "settings": settings,
+            "data": data,
         })
     }
 

@@ -1,6 +1,7 @@
 use reachtube_conform::plausibility::JointWidth;
 use serde::Serialize;
 
+use crate::allowance::Widened;
 use crate::error::{Error, Result};
 use crate::trial::Trial;
 use crate::windows::Prepared;
@@ -77,17 +78,18 @@ pub(crate) fn try_horizon(
     horizon: f64,
     most: usize,
 ) -> Result<Option<HorizonWidths>> {
-    let windows = match recordings.cut(horizon, most) {
+    match recordings.cut_some(horizon, most, |_| false) {
         Err(Error::NoWindow { .. }) => return Ok(None),
         other => other?,
     };
     let name = format!("{horizon} s, {most} windows, {}", trial.name());
     // JSON has no infinite ratio, as where a set was lost.
-    let (ratios, reason) = trial.journal.step(&name, || match trial.run(windows) {
-        Ok(answer) => Ok((ratios(&answer.found.usefulness.joints), None)),
-        Err(error) if trial.progress.is_cancelled() => Err(error),
-        Err(error) => Ok((Vec::new(), Some(error.to_string()))),
-    })?;
+    let (ratios, reason) =
+        trial.journal.step(&name, || match Widened::new(trial, recordings, horizon, most) {
+            Ok(found) => Ok((ratios(&found.answer.found.usefulness.joints), None)),
+            Err(error) if trial.progress.is_cancelled() => Err(error),
+            Err(error) => Ok((Vec::new(), Some(error.to_string()))),
+        })?;
     let ratios = ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect();
     Ok(Some(HorizonWidths { horizon, ratios, reason }))
 }

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod acceptance;
+mod allowance;
 mod build;
 mod choices;
 mod chooser;

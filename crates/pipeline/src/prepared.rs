@@ -7,7 +7,7 @@ use reachtube_robot::Robot;
 
 use crate::error::Result;
 use crate::robot::prepare_for;
-use crate::sorted::index_names;
+use crate::sorted::{index_names, origins_of};
 use crate::windows::Prepared;
 
 /// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`.
@@ -32,7 +32,10 @@ pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> 
     let (motions, from_start) = (index_names(paths, &raw), window.is_none());
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-    let prepared = Prepared { logs: &logs, motions: &motions, from_start, simulated };
+    let origins = &origins_of(&raw);
+    let origins = Some(origins);
+    let prepared =
+        Prepared { logs: &logs, motions: &motions, parts: None, from_start, simulated, origins };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),

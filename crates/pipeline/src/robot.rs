@@ -204,8 +204,14 @@ impl Evidence<'_> {
 
     fn unexplained_part(&self, nominal: &Nominal) -> Result<f64> {
         let none = BTreeMap::new();
-        let recordings =
-            Prepared { logs: &nominal.logs, motions: &none, from_start: false, simulated: false };
+        let recordings = Prepared {
+            logs: &nominal.logs,
+            motions: &none,
+            parts: None,
+            from_start: false,
+            simulated: false,
+            origins: None,
+        };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
         let answer = match trial.run(windows) {

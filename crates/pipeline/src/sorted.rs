@@ -97,6 +97,11 @@ pub(crate) fn index_names(paths: &[PathBuf], raw: &[RawLog]) -> BTreeMap<String,
     raw.iter().filter_map(|log| Some((log.name.clone(), named(log, &known)?))).collect()
 }
 
+/// Returns the SHA-256 of each recording by its name.
+pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, String> {
+    raw.iter().map(|log| (log.name.clone(), log.run.sha256.clone())).collect()
+}
+
 /// Returns the motion that a marker in the log names, or the index of its folder.
 fn named(log: &RawLog, known: &BTreeMap<PathBuf, String>) -> Option<String> {
     log.motion.clone().or_else(|| known.get(&log.file).cloned())

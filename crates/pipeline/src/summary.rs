@@ -8,6 +8,9 @@ use crate::build::Built;
 /// The name of what follows for new motions.
 const NEW_MOTIONS: &str = "new motions";
 
+/// The name of the factor that a motion needs which is left out.
+const LEFT_OUT: &str = "factor for a motion left out";
+
 /// Number of horizons beyond the chosen one whose sets are listed.
 const BEYOND: usize = 2;
 
@@ -57,6 +60,11 @@ impl Built {
         summary.warnings = warnings.map(|finding| finding.written_for(front_end)).collect();
         summary.facts.retain(|(name, _)| name != NEW_MOTIONS);
         summary.facts.insert(0, ("held out".into(), self.held_out_words()));
+        if let Some(allowance) = self.allowance_words() {
+            // The factor is about the sets without an allowance.
+            summary.facts.retain(|(name, _)| name != LEFT_OUT);
+            summary.fact("allowance for motions left out in turn", allowance);
+        }
         summary.fact(NEW_MOTIONS, &self.held_out.next_motion);
         for finding in &self.remedies {
             summary.fact("would help", finding.written_for(FrontEnd::Choices));
@@ -86,11 +94,21 @@ impl Built {
             Some(why) => why.clone(),
             None => {
                 let (rows, outside, windows) = (held_out.rows, held_out.outside, held_out.windows);
-                let part = 100.0 * outside as f64 / rows.max(1) as f64;
+                let part = match 100.0 * outside as f64 / rows.max(1) as f64 {
+                    part if outside > 0 && part < 0.1 => "less than 0.1 %".into(),
+                    part => format!("{part:.1} %"),
+                };
                 let what = self.unit();
-                format!("{outside} of {rows} rows outside ({part:.1} %), of {windows} {what}")
+                format!("{outside} of {rows} rows outside ({part}), of {windows} {what}")
             }
         }
+    }
+
+    /// Returns the allowance in words, if the sets have one.
+    #[must_use]
+    pub fn allowance_words(&self) -> Option<String> {
+        let choice = self.made.iter().find(|choice| choice.key == "allowance")?;
+        (!self.answer.model.allowance.is_empty()).then(|| choice.value.clone())
     }
 
     /// Returns how the widest set grows up to the horizon, and a little beyond.

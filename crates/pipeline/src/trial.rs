@@ -24,6 +24,8 @@ pub(crate) struct Trial<'a> {
     pub equations: Equations,
     /// Where nominal motions start.
     pub nominal: NominalStart,
+    /// What is added to the radii of X0 and U, 3n, if it is given.
+    pub allowance: Option<Vec<f64>>,
     /// What is fitted.
     pub fit: Option<FitSettings>,
     /// Who may cancel the job.
@@ -44,10 +46,10 @@ impl Progress for OnlyCancels<'_> {
 impl Trial<'_> {
     /// Returns what differs between the trials of a job, in words.
     pub(crate) fn name(&self) -> String {
-        let Self { robot, equations, expansion, fit, .. } = self;
+        let Self { robot, equations, expansion, fit, allowance, .. } = self;
         let robot = serde_json::to_string(robot.description());
         let robot = hex(&Sha256::digest(robot.expect("the keys of a description are strings")));
-        format!("{equations:?} about {expansion:?}, {fit:?}, robot {robot}")
+        format!("{equations:?} about {expansion:?}, {fit:?}, {allowance:?}, robot {robot}")
     }
 
     /// Finds the sets for windows.

@@ -103,18 +103,14 @@ fn tube(bencher: Bencher) {
     });
 }
 
-/// Measures the whole computation, from the model and its sets to the hulls at all samples.
-#[divan::bench]
-fn linear_reachable_set(bencher: Bencher) {
+/// Measures the whole computation, from the model and its sets to the hulls at all samples, for
+/// disturbances held over samples and for measurable ones.
+#[divan::bench(args = [Disturbance::Sample, Disturbance::Measurable])]
+fn linear_reachable_set(bencher: Bencher, disturbance: Disturbance) {
     let (system, grid, (initial, input)) = (arm(), uniform(), sets());
     bencher.bench(|| {
         let propagation =
             Propagation::new(black_box(&system), black_box(&grid)).expect("a short horizon");
-        ReachSets::new(
-            &propagation,
-            &Disturbance::Sample.input_gains(&propagation),
-            &initial,
-            &input,
-        )
+        ReachSets::new(&propagation, &disturbance.input_gains(&propagation), &initial, &input)
     });
 }

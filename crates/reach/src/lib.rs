@@ -14,8 +14,8 @@ pub use linear::{
     StepBounds, StepRadii, Trajectory, step,
 };
 pub use polynomial::{
-    Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, PolynomialSystem, UncertainInput,
-    Visit,
+    AutomaticFlowpipe, Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings,
+    PolynomialSystem, UncertainInput, Visit,
 };
 pub use sets::{
     GeneratorRows, Hyperrectangle, IntervalMatrix, IntervalVector, Membership, MembershipProof,

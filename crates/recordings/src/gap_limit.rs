@@ -27,8 +27,11 @@ impl GapLimit {
         if let Self::Seconds(seconds) = self {
             return seconds * (1.0 + 1e-9);
         }
-        steps.sort_by(f64::total_cmp);
-        let Some(&usual) = steps.get(steps.len() / 2) else { return f64::INFINITY };
+        if steps.is_empty() {
+            return f64::INFINITY;
+        }
+        let middle = steps.len() / 2;
+        let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
         let same = steps.iter().filter(|&&step| (step - usual).abs() <= 1e-3 * usual).count();
         let fixed_rate = same as f64 >= FIXED_RATE_SHARE * steps.len() as f64;
         usual * if fixed_rate { FIXED_RATE_GAP } else { JITTER_GAP }

@@ -33,6 +33,8 @@ pub struct RunEntry {
     /// Standard deviations of the sensors' noise in each state that the recording has left, 2n, rad
     /// and rad/s; where they were measured before a filter, which takes away what shows them.
     pub noise: Option<Vec<f64>>,
+    /// SHA-256 of the log that the run was cut from, if it was cut from one.
+    pub origin: Option<String>,
     /// Place in the order in which the runs of the suite were recorded, from 1.
     pub order: u64,
     /// Line in `runs.csv`, or number of a run in memory, from 1.
@@ -77,6 +79,7 @@ impl IndexRow {
             sha256: filled(self.sha256),
             simulated: self.simulated.unwrap_or(false),
             noise: self.noise,
+            origin: None,
             order,
             line,
         }

@@ -1,13 +1,13 @@
 //! Lines, fields and numbers of CSV text, without copies.
 
 /// Largest power of ten that is a double without rounding.
-const EXACT_POWERS: [f64; 23] = [
+pub(crate) const EXACT_POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
 /// Whole numbers below this are doubles without rounding.
-const EXACT_WHOLE: u64 = 1 << 53;
+pub(crate) const EXACT_WHOLE: u64 = 1 << 53;
 
 /// Digits that a `u64` holds in any case.
 const MOST_DIGITS: usize = 19;
@@ -21,11 +21,39 @@ pub(crate) fn is_plain(bytes: &[u8]) -> bool {
             || !bytes.iter().enumerate().any(|(at, byte)| *byte == b'\r' && is_lone(at)))
 }
 
-/// Returns the lines of plain text that are not empty, with their numbers from 1.
-pub(crate) fn lines(bytes: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
-    let all = (1..).zip(bytes.split(|byte| *byte == b'\n'));
-    let ended = all.map(|(number, line)| (number, line.strip_suffix(b"\r").unwrap_or(line)));
-    ended.filter(|(_, line)| !line.is_empty())
+/// Returns the number of bytes before the end of the line at the start of some text.
+pub(crate) fn end_of_line(text: &[u8]) -> usize {
+    text.iter().position(|byte| *byte == b'\n').unwrap_or(text.len())
+}
+
+/// The header of plain text, and where it ends.
+#[derive(Debug, PartialEq)]
+pub(crate) struct PlainHeader<'a> {
+    /// The fields; none if there is no header.
+    pub fields: Vec<&'a [u8]>,
+    /// Where the next line starts.
+    pub end: usize,
+    /// Number of lines before.
+    pub lines: u64,
+}
+
+/// Reads the header after any empty lines; `None` if it is not plain.
+pub(crate) fn plain_header(bytes: &[u8]) -> Option<PlainHeader<'_>> {
+    let (mut end, mut lines) = (0, 0);
+    while end < bytes.len() {
+        let rest = &bytes[end..];
+        let text = &rest[..end_of_line(rest)];
+        (end, lines) = (end + text.len() + 1, lines + 1);
+        let text = text.strip_suffix(b"\r").unwrap_or(text);
+        if text.iter().any(|byte| matches!(byte, b'"' | b'\r')) {
+            return None;
+        }
+        if !text.is_empty() {
+            let fields = text.split(|byte| *byte == b',').map(<[u8]>::trim_ascii).collect();
+            return Some(PlainHeader { fields, end, lines });
+        }
+    }
+    Some(PlainHeader { fields: vec![], end, lines })
 }
 
 /// Returns the finite number that a field holds; `None` for any other text.
@@ -71,7 +99,7 @@ fn few_digits(field: &[u8]) -> Option<f64> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{is_plain, lines, number};
+    use super::{PlainHeader, is_plain, number, plain_header};
 
     fn standard(text: &str) -> Option<u64> {
         text.parse::<f64>().ok().filter(|number| number.is_finite()).map(f64::to_bits)
@@ -105,9 +133,13 @@ mod tests {
     }
 
     #[test]
-    fn empty_lines_count_and_are_left_out() {
-        let found: Vec<_> = lines(b"t,q1\r\n\n1,2\n").collect();
-        assert_eq!(found, [(1, &b"t,q1"[..]), (3, &b"1,2"[..])]);
+    fn rows_start_after_empty_lines_and_a_plain_header() {
+        let fields = vec![&b"t"[..], b"q1"];
+        let expected = |end, lines| Some(PlainHeader { fields: fields.clone(), end, lines });
+        assert_eq!(plain_header(b"\r\n\nt,q1\r\n\n1,2\n"), expected(9, 3));
+        assert_eq!(plain_header(b"t , q1"), expected(7, 1));
+        assert_eq!([plain_header(b"\"t\",q1\n1"), plain_header(b"t\rq1\n")], [None, None]);
+        assert_eq!(plain_header(b"\n"), Some(PlainHeader { fields: vec![], end: 1, lines: 1 }));
         assert!(is_plain(b"a\r\nb") && !is_plain(b"a\rb") && !is_plain(b"a\r"));
         assert!(!is_plain(b"\"a\",b"));
     }

@@ -49,6 +49,7 @@ impl MemoryRuns {
             sha256: None,
             simulated: false,
             noise: None,
+            origin: None,
             order: latest + 1,
             line: self.entries.len() as u64 + 1,
         });

@@ -5,11 +5,12 @@ use std::path::Path;
 use reachtube_files::hex;
 use sha2::{Digest, Sha256};
 
-use crate::decimal::picoseconds;
 use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
-use crate::lines::{is_plain, lines, number};
+use crate::header::{is_numbered, temperature};
+use crate::lines::{PlainHeader, end_of_line, is_plain, number, plain_header};
 use crate::other_format::{HEADER, other_format};
+use crate::row::{Row, field, time};
 use crate::run::{Run, column_names};
 use crate::source::ReadOptions;
 use crate::text::{line_of, quoted};
@@ -91,16 +92,6 @@ struct CsvRow {
     time: Option<i128>,
 }
 
-/// What is read of a line.
-struct Row {
-    /// Number of fields of the header.
-    fields: usize,
-    /// The columns that are read.
-    columns: Vec<usize>,
-    /// Their values.
-    values: Vec<f64>,
-}
-
 /// The state of reading a file.
 struct Reading<'a> {
     path: &'a Path,
@@ -121,30 +112,28 @@ impl Reading<'_> {
         if let Some((problem, remedy)) = other_format(bytes) {
             return self.defect(DefectKind::File, Some(1), problem, remedy);
         }
-        let mut reader =
-            csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes);
-        let header = match reader.byte_headers() {
-            Ok(header) => header
-                .iter()
-                .map(|name| String::from_utf8_lossy(name).into_owned())
-                .collect::<Vec<_>>(),
-            Err(error) => {
-                return self.defect(
-                    DefectKind::File,
-                    Some(1),
-                    error.to_string(),
-                    "write the file as UTF-8 CSV",
-                );
+        match plain_header(bytes) {
+            Some(header) => {
+                let Some(mut row) = self.columns(&header.fields, joints) else { return };
+                if !self.plain_rows(bytes, &header, &mut row) {
+                    let joints = self.run.joints;
+                    (self.run, self.rows, self.defects) = (Run::empty(joints), vec![], vec![]);
+                    self.quoted_rows(bytes, &mut csv_reader(bytes), &mut row);
+                }
             }
-        };
-        if !self.header(&header, joints) {
-            return;
-        }
-        let columns: Vec<usize> = self.columns().collect();
-        let mut row = Row { fields: header.len(), values: vec![0.0; columns.len()], columns };
-        match is_plain(bytes) {
-            true => self.plain_rows(bytes, &mut row),
-            false => self.quoted_rows(bytes, &mut reader, &mut row),
+            None => {
+                let mut reader = csv_reader(bytes);
+                let header = match reader.byte_headers() {
+                    Ok(header) => header.clone(),
+                    Err(error) => {
+                        let (kind, remedy) = (DefectKind::File, "write the file as UTF-8 CSV");
+                        return self.defect(kind, Some(1), error.to_string(), remedy);
+                    }
+                };
+                let fields = header.iter().collect::<Vec<_>>();
+                let Some(mut row) = self.columns(&fields, joints) else { return };
+                self.quoted_rows(bytes, &mut reader, &mut row);
+            }
         }
         if self.rows.is_empty() && self.defects.is_empty() {
             let remedy = "record at least one sample, or leave the run out of runs.csv";
@@ -153,17 +142,44 @@ impl Reading<'_> {
         }
     }
 
-    /// Reads the rows of text without quotes.
-    fn plain_rows(&mut self, bytes: &[u8], row: &mut Row) {
-        let mut fields: Vec<&[u8]> = Vec::with_capacity(row.fields);
-        for (line, text) in lines(bytes).skip(1) {
-            if self.has_too_many_defects() {
-                return;
+    /// Reads the rows of text without quotes; returns false if it has some.
+    fn plain_rows(&mut self, bytes: &[u8], header: &PlainHeader, row: &mut Row) -> bool {
+        let (mut at, mut line) = (header.end, header.lines);
+        self.reserve(bytes.get(at..).unwrap_or_default(), row.fields());
+        let (mut fields, mut is_known_as_plain) = (Vec::with_capacity(row.fields()), false);
+        while at < bytes.len() && !self.has_too_many_defects() {
+            let rest = &bytes[at..];
+            line += 1;
+            if let Some(length) = row.read(rest) {
+                at += length;
+                self.numbers(line, Some(row.time), rest, &row.values);
+                continue;
             }
-            fields.clear();
-            fields.extend(text.split(|byte| *byte == b',').map(<[u8]>::trim_ascii));
-            self.row(line, &fields, row);
+            // Something else than numbers is left to the careful reader of one line.
+            is_known_as_plain = is_known_as_plain || is_plain(bytes);
+            if !is_known_as_plain {
+                return false;
+            }
+            let end = end_of_line(rest);
+            let text = rest[..end].strip_suffix(b"\r").unwrap_or(&rest[..end]);
+            if !text.is_empty() {
+                fields.clear();
+                fields.extend(text.split(|byte| *byte == b',').map(<[u8]>::trim_ascii));
+                self.row(line, &fields, row);
+            }
+            at += end + 1;
         }
+        true
+    }
+
+    /// Reserves memory for lines as long as the first one of `text`, and for no more values than
+    /// the text can hold.
+    fn reserve(&mut self, text: &[u8], fields: usize) {
+        let samples = (text.len() / (end_of_line(text) + 1)).min(text.len() / (2 * fields)) + 1;
+        self.rows.reserve(samples);
+        self.run.times.reserve(samples);
+        self.run.states.reserve(samples * 2 * self.run.joints);
+        self.run.torques.reserve(samples * self.run.joints);
     }
 
     /// Reads the rows of any other text.
@@ -197,10 +213,16 @@ impl Reading<'_> {
         is_over
     }
 
-    /// Returns the columns that are read: time, positions, velocities, torques, temperatures.
-    fn columns(&self) -> impl Iterator<Item = usize> + use<> {
+    /// Returns a row of the columns that are read: time, positions, velocities, torques,
+    /// temperatures. `None` if the header is wrong.
+    fn columns(&mut self, header: &[&[u8]], joints: Option<usize>) -> Option<Row> {
+        let names = header.iter().map(|name| String::from_utf8_lossy(name).into_owned());
+        if !self.header(&names.collect::<Vec<_>>(), joints) {
+            return None;
+        }
         let n = self.run.joints;
-        (0..=3 * n).chain(self.temperatures_at.into_iter().flat_map(move |first| first..first + n))
+        let temperatures = self.temperatures_at.map_or(0..0, |first| first..first + n);
+        Some(Row::new(header.len(), &(0..=3 * n).chain(temperatures).collect::<Vec<_>>()))
     }
 
     /// Returns whether the header is `t,q1..qn,qd1..qdn,tau1..taun`, with any columns after these.
@@ -249,26 +271,36 @@ impl Reading<'_> {
 
     /// Reads the fields of one line, and keeps its sample where it has no defect.
     fn row(&mut self, line: u64, fields: &[&[u8]], row: &mut Row) {
-        if fields.len() != row.fields {
+        if fields.len() != row.fields() {
             self.rows.push(CsvRow { line, time: None });
-            let (found, expected) = (fields.len(), row.fields);
+            let (found, expected) = (fields.len(), row.fields());
             let problem = format!("the line has {found} fields, but the header has {expected}");
             let remedy =
                 "the line is cut short or has a stray comma or quote: correct it or record again";
             return self.defect(DefectKind::Fields, Some(line), problem, remedy);
         }
         let mut sound = true;
-        for (at, (value, column)) in row.values.iter_mut().zip(&row.columns).enumerate() {
-            *value = number(fields[*column]).unwrap_or_else(|| {
+        let columns: Vec<usize> = row.columns().collect();
+        for (at, (value, column)) in row.values.iter_mut().zip(columns).enumerate() {
+            *value = number(fields[column]).unwrap_or_else(|| {
                 sound = false;
-                self.bad_number(line, at, &String::from_utf8_lossy(fields[*column]));
+                self.bad_number(line, at, &String::from_utf8_lossy(fields[column]));
                 f64::NAN
             });
         }
-        let time = self.time(line, row.values[0], fields[0]);
-        if sound && let Some(time) = time {
-            self.impossible_temperatures(line, &row.values[1 + 3 * self.run.joints..]);
-            self.sample(time, &row.values);
+        let time = row.values[0].is_finite().then(|| time(fields[0], row.values[0]));
+        match sound {
+            true => self.numbers(line, time, fields[0], &row.values),
+            false => _ = self.time(line, time, fields[0]),
+        }
+    }
+
+    /// Takes the numbers of a line whose time is in the first field of `text`, and keeps its sample
+    /// where it has no defect.
+    fn numbers(&mut self, line: u64, time: Option<i128>, text: &[u8], values: &[f64]) {
+        if let Some(time) = self.time(line, time, text) {
+            self.impossible_temperatures(line, &values[1 + 3 * self.run.joints..]);
+            self.sample(time, values);
         }
     }
 
@@ -289,25 +321,25 @@ impl Reading<'_> {
 
     /// Adds a defect for value `at` of a line, in the order of [`Self::columns`].
     fn bad_number(&mut self, line: u64, at: usize, text: &str) {
-        let n = self.run.joints;
-        let joint = at.checked_sub(1).map(|index| index % n + 1);
+        let (n, joint) = (self.run.joints, at.checked_sub(1).map(|i| i % self.run.joints + 1));
         let mut names =
             std::iter::once("t".into()).chain(column_names(n)).chain((1..=n).map(temperature));
         let name = names.nth(at).unwrap_or_default();
-        let problem = match text {
-            "" => format!("{name} is empty"),
-            _ => format!("{name} is {}, not a finite number", quoted(text)),
+        let problem = match text.is_empty() {
+            true => format!("{name} is empty"),
+            false => format!("{name} is {}, not a finite number", quoted(text)),
         };
-        let remedy = "every value must be a number: cut the run before this line, or record again";
+        let remedy = match text.is_empty() && (n + 1..=2 * n).contains(&at) {
+            true => "if no velocity was measured, delete the columns of qd; `model` derives them",
+            false => "every value must be a number: cut the run before this line, or record again",
+        };
         let defect = Defect::new(self.path, Some(line), problem, remedy).of_kind(DefectKind::Value);
         self.defects.push(defect.of_joint(joint));
     }
 
     /// Returns the time of a line in picoseconds, where it is a number and later than the time of
-    /// the line above.
-    fn time(&mut self, line: u64, value: f64, field: &[u8]) -> Option<i128> {
-        let text = str::from_utf8(field).unwrap_or_default();
-        let time = value.is_finite().then(|| picoseconds(text).unwrap_or((value * 1e12) as i128));
+    /// the line above. The first field of `text` holds it.
+    fn time(&mut self, line: u64, time: Option<i128>, text: &[u8]) -> Option<i128> {
         let above = self.rows.last().and_then(|row| row.time);
         self.rows.push(CsvRow { line, time });
         let follows = above.zip(time).is_none_or(|(above, time)| time > above);
@@ -317,6 +349,7 @@ impl Reading<'_> {
             } else {
                 "earlier than the line above"
             };
+            let text = String::from_utf8_lossy(field(text));
             let remedy = "times must increase strictly: sort the samples and drop duplicates";
             let problem = format!("t = {text} s is {what}");
             self.defect(DefectKind::Time, Some(line), problem, remedy);
@@ -356,27 +389,12 @@ impl Reading<'_> {
     }
 }
 
+/// Returns the reader of text with quotes.
+fn csv_reader(bytes: &[u8]) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes)
+}
+
 fn seconds(picoseconds: i128) -> f64 {
-    picoseconds as f64 / 1e12
-}
-
-/// Returns whether text starts with the header `t,q1..qn,qd1..qdn,tau1..taun`.
-pub(crate) fn is_strict_header(bytes: &[u8]) -> bool {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
-    let Ok(header) = reader.headers() else { return false };
-    let n = header.iter().skip(1).take_while(|name| is_numbered(name, "q")).count();
-    n > 0
-        && header.get(0) == Some("t")
-        && (1..).zip(column_names(n)).all(|(at, name)| header.get(at) == Some(&name))
-}
-
-/// Returns the name of the column with the temperature of a joint, from 1.
-fn temperature(joint: usize) -> String {
-    format!("temp{joint}")
-}
-
-fn is_numbered(name: &str, prefix: &str) -> bool {
-    name.strip_prefix(prefix)
-        .is_some_and(|rest| !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit()))
+    // The conversion of 64 bits is an instruction of the processor; both round to nearest.
+    i64::try_from(picoseconds).map_or(picoseconds as f64, |short| short as f64) / 1e12
 }

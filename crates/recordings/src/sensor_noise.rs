@@ -2,6 +2,7 @@
 //! from velocities that contradict positions.
 
 use crate::run::Run;
+use crate::units::largest_magnitudes;
 
 /// Fewest samples from which the noise is estimated.
 const FEWEST: usize = 20;
@@ -51,70 +52,93 @@ pub fn noise_deviations(run: &Run) -> Option<Vec<f64>> {
     if run.len() < FEWEST {
         return None;
     }
-    // The weights of the neighbours of each inner sample, and the gain from the standard deviation
-    // of the noise to the difference.
-    let weights: Vec<([f64; 4], f64)> = (2..run.len() - 2)
-        .map(|k| {
-            let w = cubic_weights(&run.times, k);
-            (w, (1.0 + w.iter().map(|w| w * w).sum::<f64>()).sqrt())
-        })
-        .collect();
-    let deviation = |i: usize| {
-        let values: Vec<f64> = (0..run.len()).map(|k| run.state(k)[i]).collect();
-        let difference = |(near, (w, gain)): (&[f64], &([f64; 4], f64))| {
-            let predicted = w[0] * near[0] + w[1] * near[1] + w[2] * near[3] + w[3] * near[4];
-            (near[2] - predicted).abs() / gain
-        };
-        let smallest = 1e-14 * values.iter().map(|value| value.abs()).fold(0.0, f64::max);
-        let mut differences: Vec<f64> =
-            values.windows(5).zip(&weights).map(difference).filter(|x| *x > smallest).collect();
-        if differences.is_empty() {
-            return 0.0;
-        }
-        let middle = differences.len() / 2;
-        *differences.select_nth_unstable_by(middle, f64::total_cmp).1 / NORMAL_MEDIAN
-    };
-    let mut deviations: Vec<f64> = (0..2 * run.joints).map(deviation).collect();
-    for j in 0..run.joints {
-        let contradiction = contradiction(run, j, deviations[j]);
-        let of_velocity = &mut deviations[run.joints + j];
-        *of_velocity = of_velocity.max(contradiction);
+    let mut deviations = differences_from_cubics(run);
+    let (positions, velocities) = deviations.split_at_mut(run.joints);
+    for (own, contradiction) in velocities.iter_mut().zip(contradictions(run, positions)) {
+        *own = own.max(contradiction);
     }
     Some(deviations)
 }
 
-/// Returns one standard deviation of the difference between the velocity of joint `j` (from 0),
-/// averaged over [`SPAN`], and the change of its position, whose noise is `position_noise`.
-fn contradiction(run: &Run, j: usize, position_noise: f64) -> f64 {
-    let (times, last) = (&run.times, run.len() - 1);
-    let velocity = |k: usize| run.qd(k)[j];
-    let acceleration = |k: usize| {
-        let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
-        (velocity(after) - velocity(before)) / (times[after] - times[before])
+/// Returns the standard deviation of the difference of each state, 2n, from the cubic through its
+/// neighbours.
+fn differences_from_cubics(run: &Run) -> Vec<f64> {
+    let (states, inner) = (2 * run.joints, run.len() - 4);
+    // States x inner samples.
+    let mut differences = vec![0.0; states * inner];
+    for at in 0..inner {
+        // The weights of the neighbours, and the gain from the standard deviation of the noise to
+        // the difference.
+        let w = cubic_weights(&run.times, at + 2);
+        let gain = (1.0 + w.iter().map(|w| w * w).sum::<f64>()).sqrt();
+        let near: [&[f64]; 5] = std::array::from_fn(|row| run.state(at + row));
+        for i in 0..states {
+            let predicted =
+                w[0] * near[0][i] + w[1] * near[1][i] + w[2] * near[3][i] + w[3] * near[4][i];
+            differences[i * inner + at] = (near[2][i] - predicted).abs() / gain;
+        }
+    }
+    let largest = largest_magnitudes(&run.states, states);
+    let mut counted = Vec::with_capacity(inner);
+    let deviation = |(of_state, largest): (&[f64], &f64)| {
+        counted.clear();
+        counted.extend(of_state.iter().filter(|x| **x > 1e-14 * largest).map(|x| x.to_bits()));
+        let middle = counted.len() / 2;
+        if counted.is_empty() { 0.0 } else { nth(&mut counted, middle) / NORMAL_MEDIAN }
     };
-    // What the position has moved beyond the integral of the velocity: the trapezoidal rule with
-    // its first correction (Euler and Maclaurin).
-    let (mut beyond, mut all) = (0.0, vec![0.0]);
+    differences.chunks_exact(inner).zip(&largest).map(deviation).collect()
+}
+
+/// Returns number `n` (from 0) in the order of numbers of at least 0, given as their bits, whose
+/// order is the same.
+fn nth(numbers: &mut [u64], n: usize) -> f64 {
+    f64::from_bits(*numbers.select_nth_unstable(n).1)
+}
+
+/// Returns, for each joint, one standard deviation of the difference between its velocity, averaged
+/// over [`SPAN`], and the change of its position, whose noise is in `position_noise` (n).
+fn contradictions(run: &Run, position_noise: &[f64]) -> Vec<f64> {
+    let (n, times, last) = (run.joints, &run.times, run.len() - 1);
+    // What the positions have moved beyond the integrals of the velocities, n x samples: the
+    // trapezoidal rule with its first correction (Euler and Maclaurin).
+    let mut all = vec![0.0; n * run.len()];
+    let accelerations = |k: usize, to: &mut [f64]| {
+        let (before, after) = (k.saturating_sub(1), (k + 1).min(last));
+        let (slow, fast, duration) = (run.qd(before), run.qd(after), times[after] - times[before]);
+        to.iter_mut().zip(fast.iter().zip(slow)).for_each(|(a, (v, w))| *a = (v - w) / duration);
+    };
+    let (mut own, mut next, mut squares) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    accelerations(0, &mut own);
     for k in 0..last {
-        let h = times[k + 1] - times[k];
-        let bend = h / 6.0 * (acceleration(k + 1) - acceleration(k));
-        let mean = 0.5 * (velocity(k) + velocity(k + 1) - bend);
-        beyond += run.q(k + 1)[j] - run.q(k)[j] - h * mean;
-        all.push(beyond);
+        accelerations(k + 1, &mut next);
+        let (h, before, after) = (times[k + 1] - times[k], run.state(k), run.state(k + 1));
+        for j in 0..n {
+            let bend = h / 6.0 * (next[j] - own[j]);
+            let mean = 0.5 * (before[n + j] + after[n + j] - bend);
+            let at = j * run.len() + k;
+            all[at + 1] = all[at] + (after[j] - before[j] - h * mean);
+            squares[j] += before[n + j].powi(2);
+        }
+        std::mem::swap(&mut own, &mut next);
     }
     let duration = times[last] - times[0];
     let span = SPAN.min(0.25 * duration);
     let steps = ((span / duration * last as f64).round() as usize).max(1);
-    let mut differences: Vec<f64> = (steps..=last)
-        .map(|k| ((all[k] - all[k - steps]) / (times[k] - times[k - steps])).abs())
-        .collect();
-    let at = (WITHIN_ONE_DEVIATION * differences.len() as f64) as usize;
-    let difference = *differences.select_nth_unstable_by(at, f64::total_cmp).1;
-    let squares: f64 = (0..=last).map(|k| velocity(k).powi(2)).sum();
-    let largest = LARGEST_CONTRADICTION * (squares / run.len() as f64).sqrt();
-    // Twice the variance that the noise of two positions gives: the estimates vary themselves.
-    let of_positions = 4.0 * (position_noise / span).powi(2);
-    (difference.powi(2) - of_positions).max(0.0).sqrt().min(largest)
+    let mut differences = Vec::with_capacity(run.len());
+    let contradiction = |(j, beyond): (usize, &[f64])| {
+        differences.clear();
+        differences.extend((steps..=last).map(|k| {
+            ((beyond[k] - beyond[k - steps]) / (times[k] - times[k - steps])).abs().to_bits()
+        }));
+        let at = (WITHIN_ONE_DEVIATION * differences.len() as f64) as usize;
+        let difference = nth(&mut differences, at);
+        let squares: f64 = squares[j] + run.qd(last)[j].powi(2);
+        let largest = LARGEST_CONTRADICTION * (squares / run.len() as f64).sqrt();
+        // Twice the variance that the noise of two positions gives: the estimates vary themselves.
+        let of_positions = 4.0 * (position_noise[j] / span).powi(2);
+        (difference.powi(2) - of_positions).max(0.0).sqrt().min(largest)
+    };
+    all.chunks_exact(run.len()).enumerate().map(contradiction).collect()
 }
 
 /// Returns the weights with which the cubic through the samples k-2, k-1, k+1, k+2 predicts sample

@@ -23,12 +23,9 @@ const PLAUSIBLE_RATIO: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 /// where this is implausible. Joints that hardly move are skipped.
 #[must_use]
 pub fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
-    (0..run.joints)
-        .filter_map(|joint| {
-            let slope = position_per_integral(run, joint)?;
-            (!PLAUSIBLE_RATIO.contains(&slope)).then_some((joint, slope))
-        })
-        .collect()
+    let slopes = (0..).zip(positions_per_integrals(run));
+    let slopes = slopes.filter_map(|(joint, slope)| Some((joint, slope?)));
+    slopes.filter(|(_, slope)| !PLAUSIBLE_RATIO.contains(slope)).collect()
 }
 
 /// Returns the largest difference of q and ∫q̇ dt (trapezoidal rule) of `joint` (from 0) over a
@@ -44,29 +41,40 @@ pub fn integral_gap(run: &Run, joint: usize) -> f64 {
     largest
 }
 
-/// Returns the least-squares slope of q over ∫q̇ dt, both from the first sample; `None` for a joint
-/// that hardly moves. Unrecorded motion in a gap counts on neither side.
-fn position_per_integral(run: &Run, joint: usize) -> Option<f64> {
-    let (mut integral, mut cross, mut square, mut largest) = (0.0f64, 0.0, 0.0, 0.0f64);
-    let longest = GapLimit::Usual.longest_step(steps(run).collect());
-    let mut in_gaps = 0.0;
-    for (k, dt) in (1..).zip(steps(run)) {
-        if dt > longest {
-            in_gaps += run.q(k)[joint] - run.q(k - 1)[joint];
-        } else {
-            integral += 0.5 * dt * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
-        }
-        let moved = run.q(k)[joint] - run.q(0)[joint] - in_gaps;
-        cross += moved * integral;
-        square += integral * integral;
-        largest = largest.max(integral.abs()).max(moved.abs());
-    }
-    (largest > MIN_MOTION && square > 0.0).then(|| cross / square)
+/// Sums over the samples of a joint.
+#[derive(Debug, Clone, Copy, Default)]
+struct MotionSums {
+    integral: f64,
+    cross: f64,
+    square: f64,
+    largest: f64,
+    in_gaps: f64,
 }
 
-/// Returns the times between samples, s.
-fn steps(run: &Run) -> impl Iterator<Item = f64> + '_ {
-    run.times.windows(2).map(|pair| pair[1] - pair[0])
+/// Returns, for each joint, the least-squares slope of q over ∫q̇ dt, both from the first sample;
+/// `None` for a joint that hardly moves. Unrecorded motion in a gap counts on neither side.
+fn positions_per_integrals(run: &Run) -> Vec<Option<f64>> {
+    let steps = || run.times.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest = GapLimit::Usual.longest_step(steps().collect());
+    let mut sums = vec![MotionSums::default(); run.joints];
+    for (k, dt) in (1..).zip(steps()) {
+        let (before, after) = (run.state(k - 1), run.state(k));
+        for (j, sums) in sums.iter_mut().enumerate() {
+            if dt > longest {
+                sums.in_gaps += after[j] - before[j];
+            } else {
+                sums.integral += 0.5 * dt * (after[run.joints + j] + before[run.joints + j]);
+            }
+            let moved = after[j] - run.states[j] - sums.in_gaps;
+            sums.cross += moved * sums.integral;
+            sums.square += sums.integral * sums.integral;
+            sums.largest = sums.largest.max(sums.integral.abs()).max(moved.abs());
+        }
+    }
+    let slope = |MotionSums { cross, square, largest, .. }| {
+        (largest > MIN_MOTION && square > 0.0).then(|| cross / square)
+    };
+    sums.into_iter().map(slope).collect()
 }
 
 /// No joint of a robot has a torque or force beyond this, N m or N.
@@ -82,14 +90,25 @@ const LARGEST_TORQUE: f64 = 1e6;
 #[must_use]
 pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
     let mut defects = ratio_defects(path, run, &robot.kinds());
-    defects.extend(position_defects(path, run, robot));
-    defects.extend(velocity_defects(path, run, robot));
+    let furthest = largest_magnitudes(&run.states, 2 * run.joints);
+    defects.extend(position_defects(path, &furthest[..run.joints], robot));
+    defects.extend(velocity_defects(path, &furthest[run.joints..], robot));
     defects.extend(torque_defects(path, run, &robot.kinds()));
     defects
 }
 
+/// Returns the largest magnitude in each column of `rows`, row-major with `width` columns.
+pub(crate) fn largest_magnitudes(rows: &[f64], width: usize) -> Vec<f64> {
+    let mut largest = vec![0.0f64; width];
+    for row in rows.chunks_exact(width) {
+        largest.iter_mut().zip(row).for_each(|(largest, x)| *largest = largest.max(x.abs()));
+    }
+    largest
+}
+
 /// Returns a defect for each joint with a torque that no joint has.
 fn torque_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
+    let largest = largest_magnitudes(&run.torques, run.joints);
     let defect = |joint: usize| {
         let sample = (0..run.len()).find(|&k| run.torque(k)[joint].abs() > LARGEST_TORQUE)?;
         let (torque, time) = (run.torque(sample)[joint], run.times[sample]);
@@ -100,7 +119,7 @@ fn torque_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
         let remedy = format!("give tau in {unit}, or omit that sample");
         Some(joint_defect(path, joint, problem, &remedy))
     };
-    (0..run.joints).filter_map(defect).collect()
+    (0..run.joints).filter(|joint| largest[*joint] > LARGEST_TORQUE).filter_map(defect).collect()
 }
 
 /// Returns a defect for each joint of which q or q̇, but not both, looks like degrees, or like mm
@@ -130,31 +149,38 @@ fn size(value: f64) -> String {
     if value < 1e6 { format!("{value:.3}") } else { format!("{value:.1e}") }
 }
 
-/// Returns a defect for each joint whose position is far beyond its limits.
-fn position_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
+/// Returns a defect for each joint whose position is far beyond its limits; `furthest` has the
+/// largest |q| of each joint.
+fn position_defects(path: &Path, furthest: &[f64], robot: &Robot) -> Vec<Defect> {
     let joints = robot.description().joints.iter().enumerate();
     let defect = |(joint, description): (usize, &JointDescription)| {
         let [low, high] = description.position_limits?;
-        let furthest = (0..run.len()).map(|k| run.q(k)[joint].abs()).fold(0.0, f64::max);
+        let furthest = furthest[joint];
         (furthest > LIMIT_FACTOR * low.abs().max(high.abs())).then(|| {
             let unit = description.kind.position_unit();
             let problem = format!(
                 "|q| reaches {}, but the joint's limits are {low} and {high} {unit}",
                 size(furthest)
             );
-            let remedy =
-                format!("give q in {unit}, or correct the limits in the robot's description");
+            let guess = match description.kind {
+                JointKind::Revolute => "it may be in degrees: ",
+                JointKind::Prismatic => "it may be in mm: ",
+            };
+            let remedy = format!(
+                "{guess}give q in {unit}, or correct the limits in the robot's description"
+            );
             joint_defect(path, joint, problem, &remedy)
         })
     };
     joints.filter_map(defect).collect()
 }
 
-/// Returns a defect for each joint whose velocity is far beyond its limit.
-fn velocity_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
+/// Returns a defect for each joint whose velocity is far beyond its limit; `fastest` has the
+/// largest |q̇| of each joint.
+fn velocity_defects(path: &Path, fastest: &[f64], robot: &Robot) -> Vec<Defect> {
     let defect = |joint: usize| {
         let limit = robot.joints()[joint].velocity_limit?;
-        let fastest = (0..run.len()).map(|k| run.qd(k)[joint].abs()).fold(0.0, f64::max);
+        let fastest = fastest[joint];
         (fastest > LIMIT_FACTOR * limit).then(|| {
             let unit = robot.joints()[joint].kind.velocity_unit();
             let problem =
@@ -164,7 +190,7 @@ fn velocity_defects(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
             joint_defect(path, joint, problem, &remedy)
         })
     };
-    (0..run.joints).filter_map(defect).collect()
+    (0..fastest.len()).filter_map(defect).collect()
 }
 
 fn joint_defect(path: &Path, joint: usize, problem: String, remedy: &str) -> Defect {

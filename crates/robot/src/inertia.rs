@@ -46,7 +46,7 @@ impl LinkInertia {
     /// let link = LinkInertia::about_com(2.0, Vector3::new(0.5, 0.0, 0.0), &Matrix3::zeros());
     /// assert_eq!(link.tensor()[(2, 2)], 0.5);
     /// ```
-    pub fn about_com(mass: f64, com: Vector3<f64>, inertia: &Matrix3<f64>) -> Self {
+    pub(crate) fn about_com(mass: f64, com: Vector3<f64>, inertia: &Matrix3<f64>) -> Self {
         let h = mass * com;
         let mut link = Self::about_origin(mass, h, inertia);
         link.second_moments += h * com.transpose();
@@ -54,7 +54,7 @@ impl LinkInertia {
     }
 
     /// Returns the inertia tensor about the frame's origin \[kg m²\].
-    pub fn tensor(&self) -> Matrix3<f64> {
+    pub(crate) fn tensor(&self) -> Matrix3<f64> {
         Matrix3::identity() * self.second_moments.trace() - self.second_moments
     }
 

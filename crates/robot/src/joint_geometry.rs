@@ -23,7 +23,7 @@ impl JointGeometry {
     ///
     /// For a prismatic joint, q adds to d in place of theta. Angles within 1e-12 rad of a multiple
     /// of pi/2 are taken as exactly that multiple.
-    pub fn standard_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
+    pub(crate) fn standard_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
         let after = Placement::rotation(rotation_z(snapped_sin_cos(theta)))
             .then(&Placement::translation(a, 0.0, d))
             .then(&Placement::rotation(rotation_x(snapped_sin_cos(alpha))));
@@ -35,7 +35,7 @@ impl JointGeometry {
     ///
     /// For a prismatic joint, q adds to d in place of theta. Angles within 1e-12 rad of a multiple
     /// of pi/2 are taken as exactly that multiple.
-    pub fn modified_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
+    pub(crate) fn modified_dh(a: f64, alpha: f64, theta: f64, d: f64) -> Self {
         let before = Placement::rotation(rotation_x(snapped_sin_cos(alpha)))
             .then(&Placement::translation(a, 0.0, 0.0));
         let after = Placement::rotation(rotation_z(snapped_sin_cos(theta)))
@@ -45,7 +45,7 @@ impl JointGeometry {
 
     /// Makes a joint from the placement of its frame in the original frame of the previous link,
     /// and from a unit axis. The link's frame is the joint frame moved by q.
-    pub fn explicit(placement: Placement, axis: Vector3<f64>) -> Self {
+    pub(crate) fn explicit(placement: Placement, axis: Vector3<f64>) -> Self {
         Self { before: placement, axis, after: Placement::identity() }
     }
 }

@@ -179,7 +179,7 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
         max_gap: args.max_gap,
     };
     let opened = OpenedCheck::with(model, setup, &data, None, Keep::Needed)?;
-    output::notes(&opened.problem.recordings().notes);
+    opened.print_notes(&data);
     let cases = opened.export_cases()?;
     let names = file_names::of_cases(&cases);
     let written = cases.into_iter().zip(names).map(|(case, name)| {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use reachtube::conform::model::Provenance;
 use reachtube::conform::result::FrontEnd;
 use reachtube::conform::{Finding, Keep, SuiteReach};
 use reachtube::page::{Sources, page};
@@ -51,7 +52,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&args.out.join("A.csv"))?;
     let opened = OpenedCheck::new(&args.model, None, Keep::All)?;
     let OpenedCheck { model, problem, .. } = &opened;
-    output::notes(&problem.recordings().notes);
+    opened.print_notes(&args.model.data);
     let (reach, check) = (opened.reach()?, opened.check()?);
     let file = |reach, name: String| Written {
         reach,
@@ -74,7 +75,14 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     report_files::write_figures(&page(&sources)?, &args.out)?;
     if json {
         let rows: Vec<_> = written.iter().map(Written::json).collect();
-        output::print_json(&json!({ "reach": rows }))?;
+        let Provenance { tool, model_sha256, settings, data } = &check.provenance;
+        output::print_json(&json!({
+            "reach": rows,
+            "tool": tool,
+            "model_sha256": model_sha256,
+            "settings": settings,
+            "data": data,
+        }))?;
     } else {
         let kinds = model.robot.kinds();
         let q = JointKind::any_unit(&kinds, JointKind::position_unit);

@@ -60,7 +60,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     let page = report_files::write(&sources, args.assets.into(), &args.out)?;
-    output::notes(&problem.recordings().notes);
+    opened.print_notes(&args.model.data);
     output::show(json, &json!({ "report": page.display().to_string() }), || {
         format!("wrote {}\n", page.display())
     })?;

@@ -19,6 +19,7 @@ mod output_schema;
 mod outputs;
 mod overwrite;
 mod prismatic;
+mod provenance;
 mod reach;
 mod renamed;
 mod reproduce;

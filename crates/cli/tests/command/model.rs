@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::fixture::Lab;
 use crate::identify::lab as pendulum_lab;
 use crate::output_schema::fits;
+use crate::provenance::names_what_it_is_of;
 use crate::robot_logs::{JOINT_STATE, Message, SECOND, State, bag, mcap_bytes};
 use crate::short::is_short;
 
@@ -32,6 +33,7 @@ fn logs_become_a_useful_model_that_takes_other_logs() {
         lab.run("model --robot pendulum.toml --data logs --torque motor --out arm --json").exits(0);
     let answer = json(&run.stdout);
     fits("model", &answer);
+    names_what_it_is_of(&answer, &json(&lab.read("arm/model.json")), None);
     assert_eq!((&answer["useful"], &answer["conformant"]), (&true.into(), &true.into()));
     // The description misses half of the mass, so that the robot is identified.
     let choice = |key: &str| {
@@ -233,18 +235,27 @@ fn a_log_of_standstill_is_refused() {
 
 #[test]
 #[ignore = "needs the recordings in ../shared"]
-fn raw_logs_of_two_arms_become_useful_models() {
+fn logs_of_four_arms_become_useful_models() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let data = data.canonicalize().unwrap();
     let lab = Lab::new();
+    let (shared, docs) = (data.display(), Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs"));
     let arms = [
-        ("ur10e/ur10e.urdf", "ur10e/excitation", 0.3),
-        ("double_pendulum/acrobot.urdf", "double_pendulum/openloop", 0.1),
+        (format!("{shared}/ur10e/ur10e.urdf"), "ur10e/excitation", "motor", 0.2),
+        (
+            format!("{shared}/double_pendulum/acrobot.urdf"),
+            "double_pendulum/openloop",
+            "motor",
+            0.1,
+        ),
+        (format!("{}/identify/panda-robot.toml", docs.display()), "panda", "link", 0.2),
+        ("lwa4p".into(), "schunk_lwa4p", "compensated", 0.1),
     ];
-    for (robot, logs, horizon) in arms {
-        let (robot, logs) = (data.join(robot), data.join(logs));
-        let (robot, shown) = (robot.display(), logs.display());
-        let line = format!("model --robot {robot} --data {shown} --torque motor --out arm --force");
+    for (robot, logs, torque, horizon) in arms {
+        let logs = data.join(logs);
+        let shown = logs.display();
+        let line =
+            format!("model --robot {robot} --data {shown} --torque {torque} --out arm --force");
         let answer = json(&lab.run(&format!("{line} --json")).exits(0).stdout);
         assert!(answer["horizon"].as_f64().unwrap() >= horizon, "{}", answer["horizon"]);
         let held_out = &answer["held_out"];

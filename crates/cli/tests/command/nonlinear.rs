@@ -1,5 +1,7 @@
 //! Nonlinear models: `conform`, `check`, `reach` and `report` on them.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
 
 use crate::fixture::{Lab, Run, SAMPLES, cell, robot_toml, sealed};
@@ -36,7 +38,7 @@ fn fits(schema: &jsonschema::Validator, model: &Value) {
 #[test]
 fn a_nonlinear_model_goes_through_every_command() {
     let lab = bent();
-    let run = conform(&lab, "--out model.json --report report --verbose")
+    let run = conform(&lab, "--out model.json --report report --verbose --explain 0.001,0.01")
         .exits(0)
         .notes("round 1: the linearised sets cost");
     for part in [
@@ -77,6 +79,19 @@ fn a_nonlinear_model_goes_through_every_command() {
     ] {
         assert!(page.contains(part), "{part}");
     }
+}
+
+#[test]
+fn the_recordings_that_decide_are_explained_by_default() {
+    let lab = bent();
+    let run = conform(&lab, "--out model.json --verbose").exits(0);
+    assert!(run.stdout.contains("recordings that decide the sets, a motion"), "{}", run.stdout);
+    let model: Value = serde_json::from_str(&lab.read("model.json")).unwrap();
+    let files = |list: &Value, key: &str| -> BTreeSet<String> {
+        list.as_array().unwrap().iter().map(|of| of[key].as_str().unwrap().into()).collect()
+    };
+    let explained = files(&model["explained"]["residuals"], "file");
+    assert!(explained.len() < 6 && explained == files(&model["tight"], "run"), "{explained:?}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::fixture::Lab;
+use crate::provenance::names_what_it_is_of;
 
 /// Returns the schema of one command's output.
 fn schema(name: &str) -> jsonschema::Validator {
@@ -61,7 +62,11 @@ fn results_fit_the_schema() {
 #[test]
 fn a_demo_fits_the_schema() {
     let lab = Lab::new();
-    fits("demo", &lab.run("demo --out demo --json").exits(0).json());
+    let demo = lab.run("demo --out demo --json").exits(0).json();
+    fits("demo", &demo);
+    for verdict in [&demo["model"], &demo["held_out"]] {
+        names_what_it_is_of(verdict, &demo["model"], None);
+    }
     // Its pages say that nothing was measured, and lead to each other.
     for (page, other) in [("report", "held-out"), ("held-out", "report")] {
         let html = lab.read(&format!("demo/{page}/report.html"));

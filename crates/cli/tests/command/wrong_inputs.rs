@@ -86,7 +86,9 @@ fn logs_that_cannot_be_read_are_refused_with_the_cause() {
     type Case<'a> = (&'a str, &'a dyn Fn(&mut Row, usize, usize));
     let cases: [Case; 6] = [
         ("the times look like milliseconds", &|row, _, _| row[0] *= 1e3),
-        ("give q in rad", &|row, _, _| row[1..5].iter_mut().for_each(|cell| *cell *= 360.0 / TAU)),
+        ("it may be in degrees: give q in rad", &|row, _, _| {
+            row[1..5].iter_mut().for_each(|cell| *cell *= 360.0 / TAU);
+        }),
         ("log_1.csv: joint 2: tau is 1e300 N m", &|row, k, number| {
             if (k, number) == (100, 1) {
                 row[6] = 1e300;
@@ -97,7 +99,9 @@ fn logs_that_cannot_be_read_are_refused_with_the_cause() {
                 row[1] = 1e300;
             }
         }),
-        ("qd1 is empty", &|row, _, _| row[3..5].fill(f64::NAN)),
+        ("if no velocity was measured, delete the columns of qd", &|row, _, _| {
+            row[3..5].fill(f64::NAN)
+        }),
         ("none of the 4 recordings shows a motion of several joints: 4 at rest", &|row, _, _| {
             row[1..5].iter_mut().for_each(|cell| *cell *= 1e-3);
         }),

@@ -6,7 +6,7 @@ use crate::claim::points::{Points, tolerance};
 use crate::claim::remote::{PointServer, Remote};
 use crate::claim::traces::Traces;
 use crate::data::problem::Problem;
-use crate::data::settings::{Notion, States};
+use crate::data::settings::{Notion, Settings, States};
 use crate::error::Result;
 use crate::search::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::sets::UncertaintySets;
@@ -65,6 +65,13 @@ impl Notion {
                 Self::Exact.claim_words(states, set)
             ),
         }
+    }
+}
+
+impl Settings {
+    /// Returns how far samples are used, to follow the word "samples"; empty if all are used.
+    pub(crate) fn until_words(&self) -> String {
+        self.until.map_or_else(String::new, |until| format!(" up to {until} s after the first"))
     }
 }
 

@@ -253,8 +253,9 @@ fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {
         }
     };
     let lies = settings.notion.claim_words(states, set);
+    let until = settings.until_words();
     format!(
-        "for each of the {runs} recordings, at each of its samples, {lies}; {how}, at samples, \
-         whose times are the recorded ones to a picosecond"
+        "for each of the {runs} recordings, at each of its samples{until}, {lies}; {how}, at \
+         samples, whose times are the recorded ones to a picosecond"
     )
 }

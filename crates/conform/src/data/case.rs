@@ -32,7 +32,7 @@ pub struct Case {
 impl Case {
     /// Returns the number of joints n.
     #[must_use]
-    pub fn joints(&self) -> usize {
+    pub(crate) fn joints(&self) -> usize {
         self.start.len() / 2
     }
 

@@ -21,7 +21,7 @@ impl Condition {
 
     /// Returns the condition of the first run, the default.
     #[must_use]
-    pub fn first() -> Self {
+    pub(crate) fn first() -> Self {
         Self { place: 1, temperatures: None }
     }
 

@@ -34,7 +34,7 @@ impl Dynamics {
 
     /// Takes a model; it counts as linear when its polynomials are and `method` solves a program.
     #[must_use]
-    pub fn of(polynomials: PolynomialModel, method: Method) -> Self {
+    pub(crate) fn of(polynomials: PolynomialModel, method: Method) -> Self {
         let linear = match method {
             Method::Program => polynomials.linear_system().ok(),
             Method::Bisection => None,

@@ -59,26 +59,52 @@ impl Envelope {
     /// # Guarantee
     ///
     /// Outer: exact comparisons, no rounding.
-    pub(crate) fn include_bounds(&mut self, run: u32, lower: &[f64], upper: &[f64]) {
+    pub(crate) fn include_bounds<'a>(&mut self, run: u32, lower: &'a [f64], upper: &'a [f64]) {
         self.extend(upper.len());
-        extend_bounds(&mut self.upper, &mut self.upper_run, upper, run, |new, old| new >= old);
-        extend_bounds(&mut self.lower, &mut self.lower_run, lower, run, |new, old| new <= old);
+        let of_run = |values: &'a [f64]| values.iter().map(move |value| (*value, run));
+        extend_bounds(&mut self.upper, &mut self.upper_run, of_run(upper), |new, old| new >= old);
+        extend_bounds(&mut self.lower, &mut self.lower_run, of_run(lower), |new, old| new <= old);
     }
 
     /// Merges another envelope of the same states. Ties keep the run of the smaller number,
     /// whatever the order of merging.
     pub fn merge(&mut self, other: &Self) {
         self.extend(other.upper.len());
-        for i in 0..other.upper.len() {
-            let (run, old) = (other.upper_run[i], self.upper_run[i]);
-            if other.upper[i] > self.upper[i] || (other.upper[i] == self.upper[i] && run < old) {
-                (self.upper[i], self.upper_run[i]) = (other.upper[i], run);
+        let above = other.upper.iter().zip(&other.upper_run).map(|(value, run)| (*value, *run));
+        extend_bounds(&mut self.upper, &mut self.upper_run, above, |new, old| new >= old);
+        let below = other.lower.iter().zip(&other.lower_run).map(|(value, run)| (*value, *run));
+        extend_bounds(&mut self.lower, &mut self.lower_run, below, |new, old| new <= old);
+    }
+
+    /// Returns the envelope of `others`, where this one is the envelope of these and of `left_out`.
+    /// Only bounds that `left_out` reaches are looked for anew.
+    pub(crate) fn without(&self, left_out: &[&Self], others: &[&Self]) -> Self {
+        let mut rest = Self::new(self.dimension);
+        let entries = others.iter().map(|other| other.upper.len()).max().unwrap_or(0);
+        rest.extend(entries);
+        rest.upper.copy_from_slice(&self.upper[..entries]);
+        rest.lower.copy_from_slice(&self.lower[..entries]);
+        rest.upper_run.copy_from_slice(&self.upper_run[..entries]);
+        rest.lower_run.copy_from_slice(&self.lower_run[..entries]);
+        for at in 0..entries {
+            let reaches = |bounds: fn(&Self) -> &[f64]| {
+                left_out.iter().any(|other| bounds(other).get(at) == Some(&bounds(self)[at]))
+            };
+            let having = others.iter().filter(|other| at < other.upper.len());
+            if reaches(|of| &of.upper) {
+                let bounds = having.clone().map(|of| (of.upper[at], of.upper_run[at]));
+                let (bound, run) = (&mut rest.upper[at..=at], &mut rest.upper_run[at..=at]);
+                (bound[0], run[0]) = (f64::NEG_INFINITY, u32::MAX);
+                bounds.for_each(|one| extend_bounds(bound, run, [one].into_iter(), |x, y| x >= y));
             }
-            let (run, old) = (other.lower_run[i], self.lower_run[i]);
-            if other.lower[i] < self.lower[i] || (other.lower[i] == self.lower[i] && run < old) {
-                (self.lower[i], self.lower_run[i]) = (other.lower[i], run);
+            if reaches(|of| &of.lower) {
+                let bounds = having.map(|of| (of.lower[at], of.lower_run[at]));
+                let (bound, run) = (&mut rest.lower[at..=at], &mut rest.lower_run[at..=at]);
+                (bound[0], run[0]) = (f64::INFINITY, u32::MAX);
+                bounds.for_each(|one| extend_bounds(bound, run, [one].into_iter(), |x, y| x <= y));
             }
         }
+        rest
     }
 
     /// Returns the highest value at sample k in state i.
@@ -92,12 +118,12 @@ impl Envelope {
     }
 
     /// Returns the run that has the highest value.
-    pub fn upper_run(&self, k: usize, i: usize) -> u32 {
+    pub(crate) fn upper_run(&self, k: usize, i: usize) -> u32 {
         self.upper_run[k * self.dimension + i]
     }
 
     /// Returns the run that has the lowest value.
-    pub fn lower_run(&self, k: usize, i: usize) -> u32 {
+    pub(crate) fn lower_run(&self, k: usize, i: usize) -> u32 {
         self.lower_run[k * self.dimension + i]
     }
 
@@ -149,17 +175,16 @@ impl Envelope {
     }
 }
 
-/// Moves bounds outward where `values` lie beyond them, and hands bounds that `values` reach to the
-/// run of the smaller number: 0 and -0 are equal, and a bound has the bits of its run. The pass has
-/// no branch, so that the compiler can use vector registers.
+/// Moves bounds outward where `values` with their runs lie beyond them, and hands bounds that
+/// `values` reach to the run of the smaller number: 0 and -0 are equal, and a bound has the bits of
+/// its run. The pass has no branch, so that the compiler can use vector registers.
 fn extend_bounds(
     bounds: &mut [f64],
     runs: &mut [u32],
-    values: &[f64],
-    run: u32,
+    values: impl Iterator<Item = (f64, u32)>,
     reaches: impl Fn(f64, f64) -> bool,
 ) {
-    for ((bound, owner), &value) in bounds.iter_mut().zip(runs.iter_mut()).zip(values) {
+    for ((bound, owner), (value, run)) in bounds.iter_mut().zip(runs.iter_mut()).zip(values) {
         let takes = reaches(value, *bound) & ((value != *bound) | (run < *owner));
         *bound = if takes { value } else { *bound };
         *owner = if takes { run } else { *owner };
@@ -199,6 +224,14 @@ mod tests {
             b.merge(&first);
             prop_assert_eq!(&a, &envelope_of(&runs));
             prop_assert_eq!(&a, &b);
+            let singles: Vec<Envelope> =
+                runs.iter().map(|run| envelope_of(std::slice::from_ref(run))).collect();
+            let (out, others): (Vec<_>, Vec<_>) =
+                singles.iter().enumerate().partition(|(at, _)| *at < cut);
+            let [out, others] = [out, others].map(|part: Vec<(usize, &Envelope)>| -> Vec<_> {
+                part.into_iter().map(|(_, one)| one).collect()
+            });
+            prop_assert_eq!(a.without(&out, &others), envelope_of(&runs[cut.min(runs.len())..]));
             let shuffled = order.iter().filter_map(|&run| runs.get(run)).cloned();
             prop_assert_eq!(a, envelope_of(&shuffled.collect::<Vec<_>>()));
         }

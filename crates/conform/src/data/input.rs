@@ -42,10 +42,13 @@ impl RunInput {
             let remedy = "sort the samples, drop duplicates";
             vec![Defect::new(path, None, error.to_string(), remedy)]
         })?;
-        let mut inputs = Vec::with_capacity(run.torques.len());
-        for k in 0..run.len() {
-            inputs.extend(torque.input(robot, run.q(k), run.qd(k), run.torque(k)));
-        }
+        let mut inputs = match torque {
+            Torque::Compensated => run.torques.clone(),
+            Torque::Motor | Torque::Link => {
+                let input = |k| torque.input(robot, run.q(k), run.qd(k), run.torque(k));
+                (0..run.len()).flat_map(input).collect()
+            }
+        };
         if torque == Torque::Link {
             add_motor_inertia(run, robot, &mut inputs);
         }

@@ -32,6 +32,14 @@ impl Origin {
         }
     }
 
+    /// Returns all entries of a source, or the entries that a fold has kept.
+    pub(crate) fn entries(&self) -> Box<dyn Iterator<Item = &RunEntry> + '_> {
+        match self {
+            Self::Source(source) => Box::new(source.runs().iter()),
+            Self::Fold(entries) => Box::new(entries.values()),
+        }
+    }
+
     /// Returns the name of run `index` for messages.
     pub(crate) fn run_name(&self, index: usize) -> PathBuf {
         match self {

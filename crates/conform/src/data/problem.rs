@@ -113,7 +113,7 @@ impl Problem {
             nominal_starts: &setup.nominal_starts,
             kept: &kept,
             keep_all: keep == Keep::All
-                || settings.explain.is_some()
+                || (settings.explain.is_some() && setup.explains_all)
                 || settings.notion.asks_points(),
         };
         let recordings = Recordings::read(&reader, names, progress)?;

@@ -1,3 +1,5 @@
+use std::collections::HashSet;
+
 use reachtube_recordings::{Defect, RunSource, SuiteEntry};
 
 use crate::data::suite::{Suite, SuiteReader};
@@ -59,6 +61,14 @@ impl Recordings {
         } else {
             Err(reachtube_recordings::Error::Defects(defects).into())
         }
+    }
+
+    /// Returns the names of the suites with a recording whose SHA-256 is among `digests`, as far as
+    /// each recording is known.
+    pub(crate) fn suites_among(&self, digests: &[String]) -> Vec<&str> {
+        let digests: HashSet<&str> = digests.iter().map(String::as_str).collect();
+        let is_among = |suite: &&Suite| suite.runs.iter().any(|run| run.is_among(&digests));
+        self.suites.iter().filter(is_among).map(|suite| suite.entry.name.as_str()).collect()
     }
 
     /// Returns the number of runs.

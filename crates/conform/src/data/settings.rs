@@ -296,13 +296,13 @@ impl Settings {
     /// what it may be.
     pub fn validate(&self, joints: usize) -> Result<()> {
         if let Weights::Given(weights) = &self.weights {
-            check_list("weight", weights, joints, 1e-9..=1e9)?;
+            check_list("weight", weights, 2 * joints, 1e-9..=1e9)?;
         }
         if let Noise::Fixed(radii) = &self.noise {
-            check_list("noise radius", radii, joints, 0.0..=1e9)?;
+            check_list("noise radius", radii, 2 * joints, 0.0..=1e9)?;
         }
         if let Some(radii) = &self.sensor_noise {
-            check_list("sensor noise radius", radii, joints, 0.0..=1e9)?;
+            check_list("sensor noise radius", radii, 2 * joints, 0.0..=1e9)?;
         }
         if let Some(Tolerance { position, velocity }) = self.explain {
             for (index, value) in [position, velocity].into_iter().enumerate() {
@@ -317,13 +317,21 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+/// Checks the radii that are added to X0 and U, 3n.
+///
+/// # Errors
+///
+/// As [`Settings::validate`].
+pub(crate) fn check_allowance(allowance: &[f64], joints: usize) -> Result<()> {
+    check_list("allowance", allowance, 3 * joints, 0.0..=1e9)
+}
+
 fn check_list(
     setting: &'static str,
     values: &[f64],
-    joints: usize,
+    needed: usize,
     range: RangeInclusive<f64>,
 ) -> Result<()> {
-    let needed = 2 * joints;
     if values.len() != needed {
         return Err(Error::SettingCount { setting, given: values.len(), needed });
     }

@@ -22,6 +22,9 @@ pub struct Setup {
     pub(crate) dynamics: Dynamics,
     /// The settings.
     pub(crate) settings: Settings,
+    /// Whether every run is explained, where the settings ask for explanations, and not only the
+    /// runs that decide the sets.
+    pub(crate) explains_all: bool,
     /// The nominal initial states of suites by their name, 2n each, where they are known. Any
     /// other suite starts at the mean of the recordings at hand.
     pub(crate) nominal_starts: BTreeMap<String, Vec<f64>>,
@@ -51,7 +54,7 @@ impl Setup {
     ///
     /// [`Error::Unbounded`] when the model's error was found to have no bound over its box, and
     /// settings that do not fit.
-    pub fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
+    pub(crate) fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
         let settings = settings.with_abstraction(&model)?;
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
@@ -69,7 +72,8 @@ impl Setup {
             return Err(Error::Equations);
         }
         let nominal_starts = BTreeMap::new();
-        Ok(Self { robot, dynamics, settings, nominal_starts, correction: None, condition: None })
+        let (explains_all, correction, condition) = (true, None, None);
+        Ok(Self { robot, dynamics, settings, explains_all, nominal_starts, correction, condition })
     }
 
     /// Returns the robot.
@@ -106,10 +110,16 @@ impl Setup {
         self
     }
 
-    /// Sets the tolerance of explanations; `None` asks for none.
+    /// Sets the tolerance of explanations, for all runs; `None` asks for none.
     #[must_use]
     pub fn explain(mut self, tolerance: Option<Tolerance>) -> Self {
-        self.settings.explain = tolerance;
+        (self.settings.explain, self.explains_all) = (tolerance, true);
+        self
+    }
+
+    /// Asks for explanations of the runs that decide the sets, within the default tolerance.
+    pub(crate) fn explain_deciding(mut self) -> Self {
+        (self.settings.explain, self.explains_all) = (Some(Tolerance::default()), false);
         self
     }
 

@@ -16,7 +16,7 @@ impl Side {
 
     /// Returns 1 for the upper side and -1 for the lower one.
     #[must_use]
-    pub fn sign(self) -> f64 {
+    pub(crate) fn sign(self) -> f64 {
         match self {
             Self::Upper => 1.0,
             Self::Lower => -1.0,

@@ -107,8 +107,8 @@ impl SuiteReader<'_> {
             part
         };
         let parts = entry.runs.par_iter().enumerate().fold(|| Part::new(n), take);
-        let whole = parts.reduce(|| Part::new(n), |a, b| a.merge(b, n, self.kept));
-        self.suite(entry, whole)
+        let whole = parts.reduce_with(|a, b| a.merge(b, n, self.kept));
+        self.suite(entry, whole.unwrap_or_else(|| Part::new(n)))
     }
 
     fn read_run(&self, index: usize) -> Result<(Run, RunInput), Vec<Defect>> {

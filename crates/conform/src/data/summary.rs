@@ -1,3 +1,4 @@
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use reachtube_reach::TimeGrid;
@@ -35,6 +36,9 @@ pub struct RunSummary {
     pub condition: Condition,
     /// SHA-256 of the recording.
     pub sha256: String,
+    /// SHA-256 of the log that it was cut from, if it was cut from one.
+    #[serde(skip)]
+    pub origin: Option<String>,
     /// The standard deviation of the noise in each state, 2n, as
     /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it, and at least what
     /// was measured before a filter.
@@ -56,6 +60,7 @@ impl RunSummary {
             marks: Marks::new(run),
             condition: Condition::of(entry.order, run),
             sha256: run.sha256.clone(),
+            origin: entry.origin.clone(),
             noise: noise(entry, run),
             notes: run_notes(entry, run),
         }
@@ -63,6 +68,12 @@ impl RunSummary {
 }
 
 impl RunSummary {
+    /// Returns whether it, or the log that it was cut from, is among some SHA-256.
+    pub(crate) fn is_among(&self, digests: &HashSet<&str>) -> bool {
+        let own = std::iter::once(&self.sha256).chain(&self.origin);
+        own.into_iter().any(|sha256| digests.contains(sha256.as_str()))
+    }
+
     /// Returns whether its parts are about states of `dimension` entries.
     pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
         let temperatures = self.condition.temperatures.as_ref();

@@ -174,23 +174,24 @@ impl<'a> ClosestMotion<'a> {
         let mut drift = Vec::with_capacity(all);
         for (i, to) in self.recorded.state(k).iter().enumerate() {
             let mut push = |of: &mut dyn Iterator<Item = f64>| rows.extend(of);
-            let moved = |j: usize| step.transition[(i, j)] * units[j] / units[i];
+            let moved = |j: usize| step.transition[i * 2 * n + j] * units[j] / units[i];
             match &self.constant {
                 None => {
-                    let gain = |(j, u)| step.gain[(i, j)] * radius(u) / units[i];
+                    let gain = |(j, u)| step.gain[i * n + j] * radius(u) / units[i];
                     push(&mut allowed.iter().enumerate().map(gain));
                     push(&mut (0..2 * n).map(moved));
                 }
                 Some(constant) => {
-                    let gain = |(j, d)| step.gain[(i, j)] * radius(d) / (units[i] * CONSTANT_UNITS);
+                    let gain =
+                        |(j, d)| step.gain[i * n + j] * radius(d) / (units[i] * CONSTANT_UNITS);
                     push(&mut (0..2 * n).map(moved));
                     push(&mut constant.iter().enumerate().map(gain));
                 }
             }
             let moved: f64 =
-                (0..2 * n).map(|j| step.transition[(i, j)] * (from[j] - before[j])).sum();
+                (0..2 * n).map(|j| step.transition[i * 2 * n + j] * (from[j] - before[j])).sum();
             let pushed: f64 =
-                (0..n).map(|j| step.gain[(i, j)] * (middle(&allowed[j]) - held[j])).sum();
+                (0..n).map(|j| step.gain[i * n + j] * (middle(&allowed[j]) - held[j])).sum();
             drift.push((step.reached[i] + moved + pushed - to) / units[i]);
         }
         for i in 2 * n..all {

@@ -38,6 +38,15 @@ pub struct Explanation {
 ///
 /// As [`Problem::run`].
 pub fn explain(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Explanation>> {
+    explain_some(problem, sets, |_| true)
+}
+
+/// Does what [`explain`] does for some runs, given by their indices in the source.
+pub(crate) fn explain_some(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    is_chosen: impl Fn(usize) -> bool + Sync,
+) -> Result<Vec<Explanation>> {
     let (model, n) = (problem.dynamics().polynomials(), problem.joints());
     let disturbance = problem.settings().disturbance;
     let units = UNITS.map(|unit| vec![unit; n]).concat();
@@ -49,13 +58,15 @@ pub fn explain(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Explanat
         Ok(Explanation { run: index, position, velocity })
     };
     let of_case = |case: &Case| -> Result<Vec<Explanation>> {
-        match case.run {
-            Some(index) => Ok(vec![of(case, index)?]),
+        let runs: Vec<usize> = match case.run {
+            Some(index) => vec![index],
             None => {
                 let runs = problem.recordings().suites[case.suite].every_run()?;
-                runs.par_iter().map(|run| of(case, run.index)).collect()
+                runs.iter().map(|run| run.index).collect()
             }
-        }
+        };
+        let chosen = runs.into_par_iter().filter(|index| is_chosen(*index));
+        chosen.map(|index| of(case, index)).collect()
     };
     let parts: Vec<Vec<Explanation>> =
         problem.cases()?.par_iter().map(of_case).collect::<Result<_>>()?;

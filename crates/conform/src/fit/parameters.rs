@@ -277,10 +277,10 @@ impl<'a> Parameters<'a> {
             keep_weight(robot, &mut description);
         }
         let robot = Robot::from_description(&description)?;
-        let dynamics = Dynamics::new(&robot, settings)?;
+        let (explains_all, correction) = (self.setup.explains_all, Some(correction));
+        let (dynamics, condition) = (Dynamics::new(&robot, settings)?, None);
         let (settings, nominal_starts) = (settings.clone(), nominal_starts.clone());
-        let correction = Some(correction);
-        Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition: None })
+        Ok(Setup { robot, dynamics, settings, explains_all, nominal_starts, correction, condition })
     }
 
     /// The quadratic and cubic viscous friction that is missing at the order of the model, about

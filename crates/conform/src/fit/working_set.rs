@@ -1,8 +1,8 @@
 //! A search over many recordings: those near the boundary of the sets steer it.
 //!
 //! Derivatives cost most, and few recordings decide the sets. A search therefore moves the
-//! parameters for a few recordings, and the sets of all decide whether it went well; recordings that
-//! leave the sets, or come closest to their boundary, are added.
+//! parameters for a few recordings, and the sets of all decide whether it went well. Recordings
+//! that leave the sets, or come closest to their boundary, are added.
 
 use rayon::prelude::*;
 
@@ -90,8 +90,8 @@ impl FitTask<'_> {
         Ok(Whole { model, smallest, value })
     }
 
-    /// Adds recordings to `chosen`, those closest to the boundary of the sets first. Returns whether
-    /// one of the closest is new.
+    /// Adds the recordings closest to the boundary of the sets to `chosen`. Returns whether one of
+    /// them is new.
     fn add_closest(&self, at: &Whole, all: &[usize], chosen: &mut Vec<usize>) -> bool {
         let mut closest: Vec<(f64, usize)> =
             all.par_iter().map(|&t| (self.closeness(at, t), t)).collect();

@@ -118,6 +118,9 @@ pub struct Model {
     /// How the sets were scaled, where motions were held out for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
+    /// The radii that were added to the smallest X0 and U, 3n, in SI units; none if none were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowance: Vec<f64>,
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
@@ -202,7 +205,7 @@ impl Model {
             cost_paper: found.paper_cost,
             hull_volume: finite(found.hull_volume),
             search: found.search.clone(),
-            explained: settings.explain.map(explained),
+            explained: settings.explain.filter(|_| !found.explanations.is_empty()).map(explained),
             initial_set,
             input_set,
             noise_set,
@@ -214,6 +217,7 @@ impl Model {
             proof: found.verdict.clone(),
             trust: found.trust.clone(),
             calibration: found.calibration.clone(),
+            allowance: found.allowance.clone(),
             left_out: found.left_out.clone(),
             deciding_runs: found.deciding_runs.clone(),
             trends: found.trends.clone(),
@@ -300,20 +304,6 @@ impl Model {
         json::to_lines(&self.clone().sealed())
     }
 
-    /// Returns the model with the record of how its nominal model was fitted, and a warning where
-    /// the fit suits its own motions only. Motions are left out of the fit of a linear model too.
-    #[must_use]
-    pub fn with_fit(mut self, record: FitRecord) -> Self {
-        let calibrated_cost = self.calibration.as_ref().and(self.cost);
-        let overfit = record.overfitted(calibrated_cost);
-        self.warnings.extend(overfit.as_ref().map(Warning::from));
-        // The nominal model that was fitted to all motions has seen each of them.
-        if record.taken && !self.a.is_empty() && !self.left_out.is_empty() {
-            self.left_out = record.leave_one_out.iter().map(LeftOut::from).collect();
-        }
-        Self { fit: Some(record), ..self }.sealed()
-    }
-
     pub(super) fn sealed(self) -> Self {
         Self { sha256: self.digest(), ..self }
     }
@@ -344,18 +334,21 @@ impl Model {
         self.knows_of(recordings).unwrap_or(true)
     }
 
-    /// Returns whether one of these recordings is among the recordings that the model was fitted
-    /// to; `None` if that cannot be known, because the file lists no recordings, or because a fold
-    /// that was not made to check this model has not kept the SHA-256 of each recording.
+    /// Returns whether one of these recordings is among the recordings that the model was fitted to
+    /// or its robot identified from; `None` if that cannot be known, because the file lists no
+    /// recordings, or because a fold that was not made to check this model has not kept the SHA-256
+    /// of each recording.
     #[must_use]
     pub fn knows_of(&self, recordings: &Recordings) -> Option<bool> {
         if !self.data.are_listed() {
             return None;
         }
         let suites = self.data.suites.iter().flat_map(|suite| &suite.runs);
-        let fitted: HashSet<&str> = suites.map(|run| run.sha256.as_str()).collect();
+        let seen = &self.robot.identified_from;
+        let fitted: HashSet<&str> =
+            suites.map(|run| run.sha256.as_str()).chain(seen.iter().map(String::as_str)).collect();
         let mut runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
-        if runs.any(|run| fitted.contains(run.sha256.as_str())) {
+        if runs.any(|run| run.is_among(&fitted)) {
             return Some(true);
         }
         let are_complete = recordings.suites.iter().all(|suite| suite.every_run().is_ok());

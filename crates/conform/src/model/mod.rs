@@ -1,11 +1,16 @@
 //! The model file.
 
+mod candidates;
 mod compared;
 pub(crate) mod file;
+mod fitted;
+pub(crate) mod other_data;
+pub(crate) mod provenance;
 mod reach_record;
 pub(crate) mod records;
 mod usefulness;
 mod validity;
 
 pub use file::Model;
+pub use provenance::Provenance;
 pub use records::{DataRecord, Explained, Residual, RunRecord, SuiteRecord};

@@ -5,9 +5,8 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::data::problem::Problem;
-use crate::data::settings::Settings;
 use crate::model::file::Model;
-use crate::model::records::DataRecord;
+use crate::model::provenance::Provenance;
 
 /// What the field `format` of the file says.
 const FORMAT: &str = "reachtube-reach";
@@ -19,10 +18,8 @@ const VERSION: u32 = 1;
 struct ReachRecord<'a> {
     format: &'static str,
     version: u32,
-    tool: &'static str,
-    model_sha256: &'a str,
-    settings: &'a Settings,
-    data: DataRecord,
+    #[serde(flatten)]
+    provenance: Provenance,
     files: Vec<FileRecord<'a>>,
 }
 
@@ -45,10 +42,7 @@ impl Model {
         json::to_lines(&ReachRecord {
             format: FORMAT,
             version: VERSION,
-            tool: reachtube_files::TOOL,
-            model_sha256: &self.sha256,
-            settings: problem.settings(),
-            data: DataRecord::new(problem),
+            provenance: self.provenance(problem),
             files: files.iter().map(named).collect(),
         })
     }

@@ -119,6 +119,11 @@ impl Residual {
 }
 
 impl SuiteRecord {
+    /// Returns the motion that it is part of; its own name where the index says none.
+    pub(crate) fn motion(&self) -> &str {
+        self.motion.as_ref().unwrap_or(&self.name)
+    }
+
     /// Returns the number of runs.
     #[must_use]
     pub fn count(&self) -> usize {
@@ -175,8 +180,7 @@ impl DataRecord {
     /// Returns the number of distinct motions; a suite without a motion counts as one.
     #[must_use]
     pub(crate) fn motions(&self) -> usize {
-        let motion = |suite: &'_ SuiteRecord| suite.motion.as_ref().unwrap_or(&suite.name).clone();
-        self.suites.iter().map(motion).collect::<BTreeSet<String>>().len()
+        self.suites.iter().map(SuiteRecord::motion).collect::<BTreeSet<&str>>().len()
     }
 
     /// Returns the SHA-256 that the record must have.

@@ -7,7 +7,7 @@ use reachtube_robot::Robot;
 
 use crate::claim::verdict::SuiteVerdict;
 use crate::data::dynamics::Dynamics;
-use crate::data::settings::Settings;
+use crate::data::settings::{Settings, check_allowance};
 use crate::data::setup::Setup;
 use crate::model::file::Model;
 use crate::model::records::SuiteRecord;
@@ -24,8 +24,9 @@ impl Model {
         };
         let set =
             |set: &Hyperrectangle, dimension: usize| set.is_valid() && set.dimension() == dimension;
-        // Sets that were calibrated are not the smallest, so nothing bounds their cost from below.
-        let lower_bound = self.cost_lower_bound.or(self.calibration.as_ref().and(Some(0.0)));
+        // Sets that were widened are not the smallest, so nothing bounds their cost from below.
+        let are_wider = self.calibration.is_some() || !self.allowance.is_empty();
+        let lower_bound = self.cost_lower_bound.or(are_wider.then_some(0.0));
         let costs = [self.cost, lower_bound, self.cost_paper, self.hull_volume];
         let is_linear = self.acceleration.is_empty();
         let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
@@ -54,6 +55,8 @@ impl Model {
                 "a nominal_start is not a state of {n} joints, or the runs of a suite are neither \
                  listed nor counted"
             )
+        } else if !self.allowance.is_empty() && check_allowance(&self.allowance, n).is_err() {
+            format!("its allowance is not {} radii", 3 * n)
         } else if self.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
             format!("its correction is not one of {n} joints")
         } else if !fits_box {
@@ -87,6 +90,7 @@ impl Model {
             robot,
             dynamics,
             settings: self.settings.clone(),
+            explains_all: true,
             nominal_starts,
             correction: self.correction.clone(),
             condition: None,

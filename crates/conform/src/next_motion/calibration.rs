@@ -11,6 +11,7 @@ use crate::claim::notion::plant;
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, STEP, outer_gauge};
 use crate::program::program::{Program, TIGHT};
@@ -36,6 +37,18 @@ pub struct Calibration {
     pub factor: f64,
     /// Whether only U was scaled, because the noise of the sensors limits X0.
     pub input_only: bool,
+    /// Number of models in the folder of the model file, with this one, that were calibrated by
+    /// some of the same recordings. The bound counts them, because the best of several models is
+    /// not one that was chosen beforehand.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub candidates: usize,
+}
+
+impl Calibration {
+    /// Returns the motions that were held out.
+    pub(crate) fn held_out(&self) -> impl Iterator<Item = &str> {
+        self.gauges.iter().map(|gauge| gauge.motion.as_str())
+    }
 }
 
 /// The gauge of a motion.
@@ -47,6 +60,14 @@ pub struct Gauge {
     /// The factor, at least 1, by which the radii must grow about their centres so that the sets
     /// enclose the motion.
     pub gauge: f64,
+}
+
+fn one() -> usize {
+    1
+}
+
+fn is_one(count: &usize) -> bool {
+    *count == 1
 }
 
 /// Finds the smallest sets for the motions that the settings do not hold out, and scales their
@@ -77,7 +98,7 @@ pub(crate) fn calibrate(
             .collect();
         let gauge = match &linear {
             Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
-            None => match outer_gauge(problem, &suites, Effort::Whole, 1.0, &grown)? {
+            None => match outer_gauge(problem, &suites, Effort::Whole, (1.0, 1), &grown)? {
                 OuterGauge::Factor(factor) => Ok(Some(factor)),
                 OuterGauge::None => Ok(None),
                 OuterGauge::Lost(factor) => {
@@ -93,10 +114,11 @@ pub(crate) fn calibrate(
     let gauges = held_out.iter().map(gauge).collect::<Result<Vec<_>>>()?;
     let scale = linear.as_ref().map(Program::scale);
     let factor = gauges.iter().map(|gauge| gauge.gauge).fold(1.0, f64::max);
-    let found = Found { search, left_out, ..scaled(problem, &grown(factor), scale)? };
+    let found = Found { search, left_out, ..not_smallest(problem, &grown(factor), scale)? };
     let all = motions.distinct().into_iter();
     let others = all.filter(|motion| !held_out.contains(motion)).map(String::from).collect();
-    let calibration = Calibration { fitted: others, gauges, factor, input_only };
+    let candidates = 1;
+    let calibration = Calibration { fitted: others, gauges, factor, input_only, candidates };
     Ok((found, calibration))
 }
 
@@ -174,9 +196,13 @@ fn lost(motion: &str, factor: f64) -> String {
     )
 }
 
-/// Returns the scaled sets with their reachable sets over all recordings. They are not the
-/// smallest, so there is no lower bound.
-fn scaled(problem: &Problem, sets: &UncertaintySets, scale: Option<f64>) -> Result<Found> {
+/// Returns sets that are not the smallest, so that there is no lower bound, with their reachable
+/// sets over all recordings.
+pub(crate) fn not_smallest(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    scale: Option<f64>,
+) -> Result<Found> {
     let plant = &*plant(problem)?;
     let tube = match scale {
         Some(scale) => prove((problem, plant), &Rows, sets, scale)?,
@@ -191,7 +217,7 @@ fn scaled(problem: &Problem, sets: &UncertaintySets, scale: Option<f64>) -> Resu
         paper_cost: paper,
         hull_volume: volume,
         search: None,
-        left_out: Vec::new(),
+        left_out: LeftOutMotions::default(),
         deciding: Deciding::Touching(if paper.is_some() { TIGHT } else { STEP - 1.0 }),
         touching: Vec::new(),
     })

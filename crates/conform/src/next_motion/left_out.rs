@@ -3,8 +3,9 @@ use rayon::prelude::*;
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
 use crate::error::Result;
+use crate::next_motion::allowance::Missing;
 use crate::next_motion::motions::Motions;
-use crate::next_motion::outer_gauge::{OuterGauge, outer_gauge};
+use crate::next_motion::outer_gauge::{COARSE, OuterGauge, outer_gauge};
 use crate::next_motion::without_motion::LeftOut;
 use crate::program::program::{CLOSE, Program, RowIndex};
 use crate::progress::Progress;
@@ -19,6 +20,16 @@ struct Without<'a> {
     problem: &'a Problem,
     /// Which suites are the motion's.
     suites: Vec<bool>,
+}
+
+/// Motions that were left out, beside the sets of the others.
+#[derive(Default)]
+pub(crate) struct LeftOutMotions {
+    /// Each motion.
+    pub each: Vec<LeftOut>,
+    /// The rows of motions that lie beyond the sets of the others. `None` for a single motion, for
+    /// a program that could not be solved, and for a model that is not linear.
+    pub missing: Option<Missing>,
 }
 
 /// Leaves each motion out of the program that gave the smallest sets, one after the other, and
@@ -38,10 +49,10 @@ pub(crate) fn leave_each_out(
     sets: &UncertaintySets,
     mut rows: Vec<RowIndex>,
     progress: &dyn Progress,
-) -> Result<Vec<LeftOut>> {
+) -> Result<LeftOutMotions> {
     let motions = Motions::new(problem.recordings());
     if motions.count() < 2 || problem.settings().notion.asks_points() {
-        return Ok(Vec::new());
+        return Ok(LeftOutMotions::default());
     }
     let suites = 0..problem.recordings().suites.len();
     let all = motions.distinct().into_iter().map(|motion| {
@@ -49,38 +60,55 @@ pub(crate) fn leave_each_out(
         (motion, Without { problem, suites })
     });
     program.keep_close(&mut rows, sets, CLOSE);
-    // Which motions need a program, in their order, so that the answer does not depend on cores.
+    // Which motions need a program, in their order, so that the answer does not depend on cores. A
+    // row of one suite touches the sets only if the row of all suites does.
     let mut programs = 0;
+    let deciding = program.deciding(sets);
     let numbered = all.map(|(motion, without)| {
-        let decides = without.rows(program, |suite| without.suites[suite])?.touches(sets);
+        let own = without.rows(program, |suite| without.suites[suite])?;
+        let decides = !own.tight_among(deciding.iter().copied(), sets).is_empty();
         programs += usize::from(decides);
         Ok((motion, without, decides.then_some(programs)))
     });
     let numbered: Vec<_> = numbered.collect::<Result<_>>()?;
     let leave_out = |(motion, without, number): &(&str, Without, Option<usize>)| {
         progress.go_on()?;
-        let own = without.own(program)?;
-        let count = own.iter().map(|own| own.rows() / 2).sum();
         let unknown = LeftOut {
             motion: (*motion).into(),
             cost: None,
-            rows: count,
+            rows: without.row_count()?,
             outside: None,
             gauge: None,
         };
         match *number {
             None => {
                 let cost = Some(program.cost(sets));
-                Ok(LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown })
+                let left = LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown };
+                Ok((left, Some(Missing::new())))
             }
-            Some(number) if number > MOST_PROGRAMS => Ok(unknown),
+            Some(number) if number > MOST_PROGRAMS => Ok((unknown, Some(Missing::new()))),
             Some(_) => {
-                let others = without.rows(program, |suite| !without.suites[suite])?;
+                let (own, others) = (without.own(program)?, without.others(program)?);
                 without.compare(&others, &rows, &own, unknown)
             }
         }
     };
-    numbered.par_iter().map(leave_out).collect()
+    let left: Vec<_> = numbered.par_iter().map(leave_out).collect::<Result<_>>()?;
+    let (each, missing): (Vec<LeftOut>, Vec<Option<Missing>>) = left.into_iter().unzip();
+    let is_linear = problem.dynamics().linear_system().is_some();
+    let missing: Option<Vec<Missing>> = missing.into_iter().collect();
+    let missing = missing.filter(|_| is_linear).map(merged);
+    Ok(LeftOutMotions { each, missing })
+}
+
+/// Returns the rows that any comparison misses, each by the most that it misses.
+fn merged(all: Vec<Missing>) -> Missing {
+    let mut merged = Missing::new();
+    for (row, (excess, gains)) in all.into_iter().flatten() {
+        let own = merged.entry(row).or_insert((0.0, gains));
+        own.0 = own.0.max(excess);
+    }
+    merged
 }
 
 /// Finds the sets of the other motions of a linear model, and compares `motion` with them.
@@ -121,6 +149,33 @@ impl Without<'_> {
         })
     }
 
+    /// Returns the program of the other motions; `program` has all motions.
+    fn others<'p>(&self, program: &Program<'p>) -> Result<Program<'p>> {
+        match self.problem.dynamics().linear_system() {
+            Some(_) => {
+                let deviations = self.problem.deviations()?;
+                Ok(program.with_suites(deviations, |suite| !self.suites[suite]))
+            }
+            None => self.rows(program, |suite| !self.suites[suite]),
+        }
+    }
+
+    /// Returns the number of rows of the motion, both sides together.
+    fn row_count(&self) -> Result<usize> {
+        let problem = self.problem;
+        let samples: usize = match problem.dynamics().linear_system() {
+            Some(_) => {
+                let own = problem.deviations()?.iter().filter(|d| self.suites[d.suite]);
+                own.map(|d| d.envelope.len()).sum()
+            }
+            None => {
+                let own = problem.cases()?.iter().filter(|case| self.suites[case.suite]);
+                own.map(|case| case.measured.len()).sum()
+            }
+        };
+        Ok(samples * problem.settings().states.rows(problem.shape().states))
+    }
+
     /// Returns the program of each of the motion's suites.
     fn own<'p>(&self, program: &Program<'p>) -> Result<Vec<Program<'p>>> {
         let own = (0..self.suites.len()).filter(|suite| self.suites[*suite]);
@@ -135,8 +190,10 @@ impl Without<'_> {
         rows: &[RowIndex],
         own: &[Program],
         unknown: LeftOut,
-    ) -> Result<LeftOut> {
-        let Ok(solution) = others.solve_near(rows) else { return Ok(unknown) };
+    ) -> Result<(LeftOut, Option<Missing>)> {
+        let Ok(solution) = others.solve_near(rows) else {
+            return Ok((unknown, None));
+        };
         let sets = others.repaired(&solution.sets);
         let input_only = self.problem.settings().nominal == NominalStart::Own;
         let growth = |own: &Program| {
@@ -148,7 +205,9 @@ impl Without<'_> {
             Some(_) => (Some(own.iter().map(|own| own.outside(&sets)).sum()), growth),
             None => self.outer(&sets, growth.unwrap_or(1.0), input_only)?,
         };
-        Ok(LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown })
+        let mut missing = Missing::default();
+        own.iter().for_each(|own| own.missing(&sets, &mut missing));
+        Ok((LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown }, Some(missing)))
     }
 
     /// Returns how many of the motion's rows leave the computed outer sets, and the motion's gauge
@@ -159,17 +218,20 @@ impl Without<'_> {
         guess: f64,
         input_only: bool,
     ) -> Result<(Option<usize>, Option<f64>)> {
-        let own = self.problem.cases()?.par_iter().filter(|case| self.suites[case.suite]);
+        let problem = self.problem;
+        let own = problem.cases()?.par_iter().filter(|case| self.suites[case.suite]);
         let sum = |a: Option<usize>, b: Option<usize>| Ok(a.zip(b).map(|(a, b)| a + b));
-        let outside = own.map(|case| rows_outside(self.problem, case, sets));
+        let outside = own.map(|case| rows_outside(problem, case, sets));
         let outside = outside.try_reduce(|| Some(0), sum)?;
         let grown = |factor: f64| sets.grown(factor, input_only);
         let gauge = match outside {
             Some(0) => Some(1.0),
-            _ => match outer_gauge(self.problem, &self.suites, Effort::Quick, guess, &grown)? {
-                OuterGauge::Factor(factor) => Some(factor),
-                OuterGauge::None | OuterGauge::Lost(_) => None,
-            },
+            _ => {
+                match outer_gauge(problem, &self.suites, Effort::Quick, (guess, COARSE), &grown)? {
+                    OuterGauge::Factor(factor) => Some(factor),
+                    OuterGauge::None | OuterGauge::Lost(_) => None,
+                }
+            }
         };
         Ok((outside, gauge))
     }

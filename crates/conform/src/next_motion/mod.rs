@@ -1,6 +1,7 @@
 //! Statements about motions that were not recorded: bounds, calibration by held-out motions, and
 //! descriptions of how far the sets depend on single motions and runs.
 
+pub(crate) mod allowance;
 pub(crate) mod any_run;
 pub(crate) mod bounds;
 pub(crate) mod calibration;
@@ -20,5 +21,5 @@ pub use deciding_runs::{DecidingRun, DecidingRuns};
 pub use growth::Growth;
 pub use rates::{Rate, Rates};
 pub use trends::Trend;
-pub use trust::{CONFIDENCE, Trust};
+pub use trust::{CONFIDENCE, Trust, TrustKind};
 pub use without_motion::LeftOut;

@@ -45,6 +45,18 @@ impl<'a> Motions<'a> {
         suites.filter_map(motion).collect::<BTreeSet<_>>().len()
     }
 
+    /// Returns the distinct motions of some suites, named one by one, that `is_asked`.
+    pub(crate) fn among<'s>(
+        &self,
+        suites: impl Iterator<Item = &'s str>,
+        is_asked: impl Fn(&str) -> bool,
+    ) -> Vec<&'a str> {
+        let names: BTreeSet<&str> = suites.collect();
+        let of = self.of_suites.iter().filter(|(suite, _)| names.contains(suite));
+        let motions: BTreeSet<&str> = of.map(|(_, motion)| *motion).collect();
+        motions.into_iter().filter(|motion| is_asked(motion)).collect()
+    }
+
     /// Returns what weakens a statement that counts motions, to follow its basis.
     pub(crate) fn caveat(&self) -> &'static str {
         if self.are_named {

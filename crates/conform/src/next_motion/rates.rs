@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::claim::verdict::Verdict;
 use crate::data::recordings::Recordings;
 use crate::next_motion::motions::Motions;
-use crate::next_motion::trust::CONFIDENCE;
+use crate::next_motion::trust::{CONFIDENCE, TrustKind};
 
 /// Number of times that the motions are drawn anew.
 const RESAMPLES: usize = 10_000;
@@ -30,6 +30,8 @@ pub struct Rates {
     pub level: f64,
     /// How often motions were drawn with replacement for the intervals.
     pub resamples: usize,
+    /// How far the rates carry: a description.
+    pub kind: TrustKind,
 }
 
 /// A rate.
@@ -64,7 +66,14 @@ impl Rates {
             }
         }
         let [rows, suites] = rates(&counts);
-        Self { motions: names.len(), rows, suites, level: CONFIDENCE, resamples: RESAMPLES }
+        Self {
+            motions: names.len(),
+            rows,
+            suites,
+            level: CONFIDENCE,
+            resamples: RESAMPLES,
+            kind: TrustKind::Description,
+        }
     }
 }
 

@@ -6,7 +6,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::claim::verdict::Verdict;
+use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
+use crate::data::settings::{InitialLimit, Weights};
 use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::motions::Motions;
@@ -15,6 +17,18 @@ use crate::tube::witness::Witness;
 
 /// Confidence of the bounds that are reported.
 pub const CONFIDENCE: f64 = 0.95;
+
+/// How far a statement about motions that were not recorded carries.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrustKind {
+    /// It holds for all distributions of motions that satisfy the assumption of its basis.
+    Guarantee,
+    /// The formula of a guarantee where a condition of its theorem is not met. It bounds nothing.
+    Indication,
+    /// It describes the recordings at hand. It bounds nothing.
+    Description,
+}
 
 /// A statement about the next motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,17 +48,24 @@ pub struct Trust {
     pub confidence: f64,
     /// How the bound is made and what it assumes.
     pub basis: String,
+    /// How far the bound carries; `None` if there is none, and in files of versions before it was
+    /// recorded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<TrustKind>,
 }
 
 impl Trust {
     /// Returns the scenario bound for sets that were fitted to `recordings` and touch `tight`: the
     /// rows of support are among the tight ones.
     ///
+    /// It is an indication if a condition of the theorem is not met.
+    ///
     /// At a first sample that no recording leaves, all motions touch a set without width. Motions
     /// that also touch it elsewhere give the same sets alone, so only they count; where there are
     /// none, all do.
     #[must_use]
-    pub fn of_fit(recordings: &Recordings, tight: &[Witness]) -> Self {
+    pub fn of_fit(problem: &Problem, tight: &[Witness]) -> Self {
+        let recordings = problem.recordings();
         let motions = Motions::new(recordings);
         let count = |least: f64| {
             let rows = tight.iter().filter(|witness| witness.radius > least);
@@ -55,7 +76,14 @@ impl Trust {
             some => some,
         };
         let bound = scenario_bound(motions.count(), deciding, 1.0 - CONFIDENCE);
-        Self::new(&motions, deciding, bound, "scenario bound (Campi and Garatti 2018)")
+        let of = Self::new(&motions, deciding, bound, "scenario bound (Campi and Garatti 2018)");
+        match unmet(problem) {
+            None => of,
+            Some(condition) => {
+                let basis = format!("{}; {condition}", of.basis);
+                Self { basis, kind: Some(TrustKind::Indication), ..of }
+            }
+        }
     }
 
     /// Returns the statement about sets that are not the smallest, `gap` above the program's bound:
@@ -78,6 +106,15 @@ impl Trust {
         Self::unknown(Motions::new(recordings).count(), basis.into())
     }
 
+    /// Returns that there is no guarantee for sets that were widened by what motions ask for that
+    /// are among the recordings.
+    #[must_use]
+    pub(crate) fn with_allowance(recordings: &Recordings) -> Self {
+        let basis = "no scenario bound: it holds for the smallest sets only, and these were \
+                     widened by an allowance for motions left out";
+        Self::unknown(Motions::new(recordings).count(), basis.into())
+    }
+
     /// Returns the bound for sets that were calibrated by motions that were held out from the fit,
     /// and that enclose them where `is_proved`.
     ///
@@ -87,29 +124,76 @@ impl Trust {
     /// at most (1 - ε)^n, which is the hold-out bound without a violation.
     #[must_use]
     pub(crate) fn of_calibration(
-        recordings: &Recordings,
+        problem: &Problem,
         calibration: &Calibration,
         is_proved: bool,
     ) -> Self {
-        let (motions, count) = (Motions::new(recordings), calibration.gauges.len());
+        let motions = Motions::new(problem.recordings());
+        let count = calibration.gauges.len();
         if !is_proved {
             let basis = "no calibration bound: the scaled sets were not proved to enclose the \
                          recordings";
             return Self::unknown(count, basis.into());
         }
+        let seen = &problem.robot().description().identified_from;
+        let suites = problem.recordings().suites_among(seen);
+        let seen = motions.among(suites.into_iter(), |motion| {
+            calibration.gauges.iter().any(|gauge| gauge.motion == motion)
+        });
+        if !seen.is_empty() {
+            let basis = format!(
+                "no calibration bound: the robot was identified from recordings of motions that \
+                 were held out here ({}); identify it from the others",
+                seen.join(", ")
+            );
+            return Self::unknown(count, basis);
+        }
         let largest = |gauge: &&Gauge| gauge.gauge >= calibration.factor;
         Self {
             motions: count,
             deciding: calibration.gauges.iter().filter(largest).count(),
-            violation_probability: clopper_pearson(count, 0, 1.0 - CONFIDENCE),
-            average_probability: Some(1.0 / (count as f64 + 1.0)),
+            violation_probability: 1.0,
+            average_probability: Some(1.0),
             confidence: CONFIDENCE,
             basis: format!(
-                "split conformal calibration (Vovk 2012) for exchangeable motions; at confidence \
-                 for independent ones{}",
+                "split conformal calibration (Vovk 2012) for exchangeable motions, and for a \
+                 model that was fixed before a look at the held-out ones; at confidence for \
+                 independent motions{}{}",
+                match problem.dynamics().linear_system() {
+                    Some(_) => "",
+                    None => "; assumes that larger sets have larger computed outer sets",
+                },
                 motions.caveat()
             ),
+            kind: Some(TrustKind::Guarantee),
         }
+        .of_candidates(calibration.candidates)
+    }
+
+    /// Returns the calibration bound for the one of `candidates` models that was chosen after all
+    /// were calibrated by the same motions: by the union of what each may miss, m/(n + 1) on
+    /// average, and the bound at confidence 1 - β/m.
+    #[must_use]
+    pub fn of_candidates(self, candidates: usize) -> Self {
+        let (count, of) = (self.motions, candidates.max(1) as f64);
+        if of > count as f64 {
+            let basis = format!(
+                "the {count} held-out motions calibrated {candidates} models in this folder, too \
+                 many to choose one of them"
+            );
+            return Self::unknown(count, basis);
+        }
+        Self {
+            violation_probability: clopper_pearson(count, 0, (1.0 - CONFIDENCE) / of),
+            average_probability: Some(of / (count as f64 + 1.0)),
+            ..self
+        }
+    }
+
+    /// Returns the number of models that the calibration bound counts.
+    pub(crate) fn candidates(&self) -> usize {
+        let average = self.average_probability.unwrap_or_default();
+        (average * (self.motions as f64 + 1.0)).round() as usize
     }
 
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
@@ -130,6 +214,7 @@ impl Trust {
             average_probability: None,
             confidence: CONFIDENCE,
             basis: format!("{name} for independent motions{}", motions.caveat()),
+            kind: Some(TrustKind::Guarantee),
         }
     }
 
@@ -142,6 +227,35 @@ impl Trust {
             average_probability: None,
             confidence: CONFIDENCE,
             basis,
+            kind: None,
         }
+    }
+}
+
+/// Returns the condition of the scenario bound's theorem that a problem does not meet: the sets
+/// must solve a convex program in which each motion adds rows, and changes nothing else.
+fn unmet(problem: &Problem) -> Option<&'static str> {
+    let settings = problem.settings();
+    let is_limited = settings.are_limited_by_noise() && settings.sensor_noise.is_none();
+    let seen = &problem.robot().description().identified_from;
+    let is_seen = !problem.recordings().suites_among(seen).is_empty();
+    if problem.dynamics().linear_system().is_none() {
+        Some("its theorem is proved for convex programs, and this model is not linear")
+    } else if settings.weights == Weights::Spread {
+        Some("its theorem asks for a fixed cost, and these weights depend on the recordings")
+    } else if is_limited {
+        Some(
+            "its theorem asks for fixed limits, and the limit by sensor noise was estimated from \
+             the recordings",
+        )
+    } else if settings.initial_limit != InitialLimit::None {
+        Some("its theorem asks for fixed limits, and the limit of X0 depends on the recordings")
+    } else if is_seen {
+        Some(
+            "its theorem asks for a fixed model, and this robot was identified from recordings \
+              among these",
+        )
+    } else {
+        None
     }
 }

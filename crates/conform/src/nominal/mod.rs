@@ -7,3 +7,4 @@ pub(crate) mod motion;
 mod robot_equations;
 pub(crate) mod simulate;
 pub(crate) mod steps;
+pub(crate) mod transition;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
 use crate::error::Result;
-use crate::program::program::{Program, RowIndex, Solution, dot};
+use crate::program::program::{Program, RowIndex, Solution, TIGHT, dot};
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Deviation;
 use crate::tube::rows::NEGLIGIBLE_RADIUS;
@@ -21,6 +21,28 @@ impl Program<'_> {
         let blocks = &mut program.blocks;
         blocks.iter_mut().for_each(|block| block.envelope = Envelope::new(self.shape.states));
         deviations.into_iter().for_each(|d| blocks[d.grid].envelope.merge(&d.envelope));
+        program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program
+    }
+
+    /// Returns what [`with_deviations`](Self::with_deviations) does for the deviations of some
+    /// suites; this program has the deviations of all. Few bounds differ, and only they are
+    /// computed.
+    #[must_use]
+    pub(crate) fn with_suites(
+        &self,
+        deviations: &[Deviation],
+        is_kept: impl Fn(usize) -> bool,
+    ) -> Self {
+        let mut program = self.clone();
+        for (grid, block) in program.blocks.iter_mut().enumerate() {
+            let on_grid = deviations.iter().filter(|d| d.grid == grid);
+            let (kept, left_out): (Vec<&Deviation>, Vec<&Deviation>) =
+                on_grid.partition(|d| is_kept(d.suite));
+            let [kept, left_out] = [kept, left_out]
+                .map(|part| part.into_iter().map(|d| &d.envelope).collect::<Vec<_>>());
+            block.envelope = block.envelope.without(&left_out, &kept);
+        }
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
     }
@@ -68,14 +90,29 @@ impl Program<'_> {
         program
     }
 
-    /// Returns whether a row touches the reach of the sets where they have one. At a first sample
+    /// Returns the rows that touch the reach of the sets where they have one. At a first sample
     /// that no recording leaves, all rows touch a set without width, and none decides anything.
     #[must_use]
-    pub(crate) fn touches(&self, sets: &UncertaintySets) -> bool {
+    pub(crate) fn deciding(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
         let radius = self.unknowns(sets).radius;
         let has_width =
             |&(b, k, i, _): &RowIndex| dot(self.row(b, k, i).1, &radius) > NEGLIGIBLE_RADIUS;
-        self.tight(sets).iter().any(has_width)
+        self.tight(sets).into_iter().filter(has_width).collect()
+    }
+
+    /// Returns the rows among some that are [tight](Self::tight).
+    pub(crate) fn tight_among(
+        &self,
+        rows: impl Iterator<Item = RowIndex>,
+        sets: &UncertaintySets,
+    ) -> Vec<RowIndex> {
+        let unknowns = self.unknowns(sets);
+        let touches = |index: &RowIndex| {
+            let (b, k, i, _) = *index;
+            let radius = dot(self.row(b, k, i).1, &unknowns.radius) + unknowns.free_noise[i];
+            self.excess(*index, &unknowns) >= -TIGHT * radius
+        };
+        rows.filter(|(b, k, ..)| *k < self.blocks[*b].envelope.len()).filter(touches).collect()
     }
 
     /// Returns the number of rows, both sides together, that do not hold, up to rounding.

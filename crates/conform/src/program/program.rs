@@ -234,14 +234,14 @@ impl<'a> Program<'a> {
     }
 
     /// The entries of E_k and of R_k in row i.
-    pub(super) fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+    pub(crate) fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
         let width = self.shape.radii();
         let start = k * self.shape.entries() + i * 2 * width;
         self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
     }
 
     /// Deviation minus reach of a row, unrounded.
-    pub(super) fn excess(&self, index: RowIndex, unknowns: &Unknowns) -> f64 {
+    pub(crate) fn excess(&self, index: RowIndex, unknowns: &Unknowns) -> f64 {
         let (b, k, i, side) = index;
         let (centre, radius) = self.row(b, k, i);
         let reach = side.sign() * dot(centre, &unknowns.centre) + dot(radius, &unknowns.radius);
@@ -269,14 +269,14 @@ impl<'a> Program<'a> {
     }
 
     /// Whether a row with this excess misses more than rounding.
-    pub(super) fn is_violated(&self, index: RowIndex, excess: f64, unknowns: &Unknowns) -> bool {
+    pub(crate) fn is_violated(&self, index: RowIndex, excess: f64, unknowns: &Unknowns) -> bool {
         let (b, k, i, _) = index;
         let reach = dot(self.row(b, k, i).1, &unknowns.radius);
         let size = self.bound(index).abs().max(reach);
         excess > (TOLERANCE * size).max(ROUNDING * self.scale)
     }
 
-    pub(super) fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
+    pub(crate) fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
         let join = |pick: fn(&Hyperrectangle) -> &Vec<f64>| {
             pick(&sets.initial_set).iter().chain(pick(&sets.input_set)).copied().collect()
         };
@@ -358,13 +358,7 @@ impl<'a> Program<'a> {
     /// Returns the rows that touch the hull of the sets' reach, within 1e-6 of its radius.
     #[must_use]
     pub(crate) fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
-        let unknowns = self.unknowns(sets);
-        let touches = |index: &RowIndex| {
-            let (b, k, i, _) = *index;
-            let radius = dot(self.row(b, k, i).1, &unknowns.radius) + unknowns.free_noise[i];
-            self.excess(*index, &unknowns) >= -TIGHT * radius
-        };
-        self.indices(1).filter(touches).collect()
+        self.tight_among(self.indices(1), sets)
     }
 
     /// Keeps the rows that come within `part` of the largest |d| of the sets' reach.
@@ -381,10 +375,10 @@ impl<'a> Program<'a> {
 }
 
 /// The unknowns of the program, unscaled.
-pub(super) struct Unknowns {
+pub(crate) struct Unknowns {
     pub(super) centre: Vec<f64>,
     pub(super) radius: Vec<f64>,
-    free_noise: Vec<f64>,
+    pub(super) free_noise: Vec<f64>,
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -35,6 +35,7 @@ impl Check {
             &[Code::GrowthNeeded],
             &[Code::NextMotion, Code::NoGuarantee],
             &[Code::HeldOutRates],
+            &[Code::OtherRecordings],
         ];
         let others = others.map(|codes| Section { findings: of(codes), ..Section::default() });
         let mut sections = vec![first, suites];

@@ -7,7 +7,7 @@ use crate::check::Check;
 use crate::claim::verdict::{SuiteVerdict, Verdict};
 use crate::model::file::Model;
 use crate::result::code::Code;
-use crate::result::finding::Finding;
+use crate::result::finding::{Finding, Severity};
 use crate::result::front_end::FrontEnd;
 use crate::result::model_summary::{AtHorizon, brief, share, table_of_sets, widest_first};
 use crate::result::remedy::Remedy;
@@ -28,8 +28,12 @@ impl Check {
         let warnings = model.warnings.iter().map(Finding::from);
         let warnings = warnings.filter(|warning| warning.code != Code::Cause);
         let warnings = warnings.map(|warning| format!("of the model itself: {}", brief(&warning)));
+        let other = self.findings.iter().filter(|finding| {
+            finding.code == Code::OtherRecordings && finding.severity == Severity::Warning
+        });
+        let other = other.map(|finding| finding.text.clone());
         let mut summary = Summary {
-            verdict: self.verdict_lines(model),
+            verdict: self.verdict_lines(model).into_iter().chain(other).collect(),
             warnings: warnings.collect(),
             ..Summary::default()
         };
@@ -72,10 +76,11 @@ impl Check {
             count => format!(" ({:.1} %)", 100.0 * count as f64 / (*rows).max(1) as f64),
         };
         let mut lines = vec![format!(
-            "{words}: {}; {} of {rows} rows outside the {set}{percent}, in {outside} of {}",
+            "{words}: {}; {} of {rows} rows outside the {set}{percent}, in {outside} of {}{}",
             counted(*runs, "recording"),
             violations.count,
             counted(suites.len(), "suite"),
+            self.until_words(),
         )];
         lines.extend(Finding::vacuous_in_brief(model));
         let points = self.verdict.points.as_ref();
@@ -90,6 +95,14 @@ impl Check {
         );
         lines.extend(Finding::lost_in_brief(lost));
         lines
+    }
+}
+
+impl Check {
+    /// Returns up to which time the recordings were compared, if they were not to their end.
+    fn until_words(&self) -> String {
+        let until = self.provenance.settings.until;
+        until.map_or_else(String::new, |until| format!(", up to {until} s"))
     }
 }
 

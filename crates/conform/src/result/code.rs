@@ -129,6 +129,8 @@ codes! {
     UseUnknown = "use-unknown",
     /// No recording of a suite starts near the model's nominal start.
     OtherStart = "other-start",
+    /// Recordings that the model lists are missing or have other content.
+    OtherRecordings = "other-recordings",
     /// A note on the recordings.
     Recordings = "recordings",
     /// The recordings contradict the robot's description, or the dynamics of rigid bodies.

@@ -174,7 +174,9 @@ fn touching(model: &Model) -> Section {
 fn explanations(model: &Model) -> Section {
     let searched = model.explained.as_ref().zip(model.settings.explain);
     let finding = searched.map(|(explained, tolerance)| {
-        Finding::explanations(explained, tolerance, &model.robot.kinds())
+        let are_some = explained.residuals.len() < model.data.run_count();
+        let some = if are_some { " that decide the sets" } else { "" };
+        Finding::explanations(explained, some, tolerance, &model.robot.kinds())
     });
     Section { findings: finding.into_iter().collect(), ..Section::default() }
 }

@@ -7,6 +7,7 @@ use crate::claim::claim::Claim;
 use crate::claim::look::Look;
 use crate::data::problem::Problem;
 use crate::error::Result;
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::progress::Progress;
 use crate::search::found::{Deciding, Found, SearchSummary};
 use crate::search::journal::Journal;
@@ -109,7 +110,7 @@ pub(super) fn bisect(
         paper_cost: None,
         hull_volume: volume,
         search: Some(search),
-        left_out: Vec::new(),
+        left_out: LeftOutMotions::default(),
         deciding: Deciding::Touching(TOLERANCE),
         touching: Vec::new(),
     })

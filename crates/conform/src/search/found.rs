@@ -3,7 +3,7 @@ use std::collections::HashSet;
 use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
-use crate::next_motion::without_motion::LeftOut;
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::tube::rows::{Edge, Row};
 use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
@@ -25,7 +25,7 @@ pub(crate) struct Found {
     /// The search, for a model that is not linear.
     pub search: Option<SearchSummary>,
     /// The sets without each motion.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: LeftOutMotions,
     /// Which rows decide the sets.
     pub deciding: Deciding,
     /// The recorded points that decide the sets in directions other than the states.

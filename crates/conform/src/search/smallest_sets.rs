@@ -7,7 +7,7 @@ use crate::claim::touching::touching;
 use crate::data::problem::Problem;
 use crate::data::settings::Method;
 use crate::error::Result;
-use crate::next_motion::left_out::leave_each_out;
+use crate::next_motion::left_out::{LeftOutMotions, leave_each_out};
 use crate::program::program::{Program, RowIndex, TIGHT};
 use crate::progress::{Progress, Silent};
 use crate::search::bisection::bisect;
@@ -91,7 +91,7 @@ fn finish<'a>(
         paper_cost: paper,
         hull_volume: volume,
         search: (!is_exact).then_some(summary),
-        left_out: Vec::new(),
+        left_out: LeftOutMotions::default(),
         deciding: match claim.tolerance() {
             _ if !is_exact => Deciding::Rows(program.tight(&tube.sets).into_iter().collect()),
             None => Deciding::Touching(TIGHT),

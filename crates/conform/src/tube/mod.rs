@@ -12,6 +12,7 @@ pub(crate) mod polynomial;
 pub(crate) mod rows;
 mod sensitivity;
 pub(crate) mod state;
+mod state_sensitivities;
 pub(crate) mod strand;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod tube;

@@ -1,6 +1,5 @@
 //! A model linearised along its nominal motion: how far X0 and U move each state, to first order.
 
-use nalgebra::{DMatrix, DVector};
 use reachtube_abstraction::{Linearisation, PolynomialModel};
 use reachtube_reach::Disturbance;
 use reachtube_scalar::Lanes;
@@ -11,6 +10,7 @@ use crate::error::Result;
 use crate::nominal::simulate::{simulate, substeps};
 use crate::sets::UncertaintySets;
 use crate::tube::direction::{Direction, DirectionRow};
+use crate::tube::state_sensitivities::{Node, StateSensitivities};
 
 /// Several motions that are simulated at once.
 pub(super) type Many = Lanes<8>;
@@ -34,18 +34,6 @@ pub(super) struct Sensitivity {
     pub nodes: Vec<Node>,
     /// The rows in the directions that were asked, in their order.
     pub directions: Vec<DirectionRow>,
-}
-
-/// The signs of the sensitivities of each state at one sample.
-#[derive(Debug, Clone)]
-pub(super) struct Node {
-    /// The sample.
-    pub sample: usize,
-    /// For each state, the signs of its row of Φ(t_k, 0): 2n x 2n.
-    pub start: Vec<f64>,
-    /// For each earlier sample, input and state, the sign of the state's derivative with respect to
-    /// that input over that sample: samples x n x 2n.
-    pub input: Vec<f64>,
 }
 
 impl Sensitivity {
@@ -73,21 +61,27 @@ impl Sensitivity {
         let substeps = substeps(&mut linearisation, case, &start);
         let nominal = simulate(model, times, substeps, &start, &inputs)?;
         let shape = Shape { states: 2 * n, inputs: n };
-        let mut grown = Sensitivities::new(shape, times.len(), disturbance);
+        let mut grown = StateSensitivities::new(shape, times.len(), disturbance);
         let stride = times.len().div_ceil(NODES).max(1);
         let mut found = Self {
             shape,
             nominal,
             substeps,
-            coefficients: Vec::new(),
+            coefficients: Vec::with_capacity(times.len() * shape.entries()),
             nodes: Vec::new(),
             directions: vec![DirectionRow::default(); asked.len()],
         };
         grown.write_into(&mut found.coefficients);
-        for k in 1..times.len() {
-            let (before, after) = found.nominal[(k - 1) * 2 * n..(k + 1) * 2 * n].split_at(2 * n);
-            let middle: Vec<f64> = before.iter().zip(after).map(|(x, y)| 0.5 * (x + y)).collect();
-            let (a, b) = linearisation.at(&middle, &inputs[(k - 1) * n..k * n]);
+        let between = |pair: &[f64]| {
+            let (before, after) = pair.split_at(2 * n);
+            before.iter().zip(after).map(|(x, y)| 0.5 * (x + y)).collect::<Vec<f64>>()
+        };
+        let middles: Vec<Vec<f64>> =
+            (1..times.len()).map(|k| between(&found.nominal[(k - 1) * 2 * n..][..4 * n])).collect();
+        let points: Vec<(&[f64], &[f64])> =
+            middles.iter().map(|x| &**x).zip(inputs.chunks_exact(n)).collect();
+        linearisation.along(&points, |at, a, b| {
+            let k = at + 1;
             grown.advance(a, b, times[k] - times[k - 1]);
             grown.write_into(&mut found.coefficients);
             for (row, asked) in found.directions.iter_mut().zip(asked) {
@@ -98,7 +92,7 @@ impl Sensitivity {
             if k % stride == 0 || k + 1 == times.len() {
                 found.nodes.push(grown.node(k));
             }
-        }
+        });
         Ok(found)
     }
 
@@ -107,97 +101,5 @@ impl Sensitivity {
         let width = self.shape.radii();
         let start = k * self.shape.entries() + i * 2 * width;
         self.coefficients[start..start + 2 * width].split_at(width)
-    }
-}
-
-/// The sensitivities of the state at one sample to the start and to every earlier input.
-struct Sensitivities {
-    shape: Shape,
-    disturbance: Disturbance,
-    /// Φ(t_k, 0).
-    start: DMatrix<f64>,
-    /// Φ(t_k, t_{j+1}) Γ_j, n columns for each sample j < k.
-    inputs: DMatrix<f64>,
-    spare: DMatrix<f64>,
-    samples: usize,
-}
-
-impl Sensitivities {
-    fn new(shape: Shape, samples: usize, disturbance: Disturbance) -> Self {
-        let inputs = DMatrix::zeros(shape.states, shape.inputs * samples.saturating_sub(1));
-        let start = DMatrix::identity(shape.states, shape.states);
-        Self { shape, disturbance, start, spare: inputs.clone(), inputs, samples: 0 }
-    }
-
-    /// Advances by one step of length h (s) of δẋ = A δx + B δu.
-    fn advance(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) {
-        let Shape { states, inputs: n } = self.shape;
-        let mut augmented = DMatrix::zeros(states + n, states + n);
-        augmented.view_mut((0, 0), (states, states)).copy_from(&(a * h));
-        augmented.view_mut((0, states), (states, n)).copy_from(&(b * h));
-        let exponential = augmented.exp();
-        let phi = exponential.view((0, 0), (states, states));
-        self.start = phi * &self.start;
-        let columns = n * self.samples;
-        self.spare.columns_mut(0, columns).gemm(1.0, &phi, &self.inputs.columns(0, columns), 0.0);
-        self.spare.columns_mut(columns, n).copy_from(&exponential.view((0, states), (states, n)));
-        std::mem::swap(&mut self.inputs, &mut self.spare);
-        self.samples += 1;
-    }
-
-    /// Appends the rows of E_k and R_k.
-    fn write_into(&self, coefficients: &mut Vec<f64>) {
-        let Shape { states, inputs: n } = self.shape;
-        let (mut sum, mut total) = (DMatrix::zeros(states, n), DMatrix::zeros(states, n));
-        for j in 0..self.samples {
-            let gamma = self.inputs.columns(j * n, n);
-            sum += gamma;
-            total.zip_apply(&gamma, |total: &mut f64, x| *total += x.abs());
-        }
-        if self.disturbance == Disturbance::Constant {
-            total = sum.abs();
-        }
-        for i in 0..states {
-            coefficients.extend(self.start.row(i).iter().chain(sum.row(i).iter()));
-            coefficients.extend(self.start.row(i).iter().map(|x| x.abs()));
-            coefficients.extend(total.row(i).iter());
-        }
-    }
-
-    /// The row in direction l.
-    fn along(&self, l: &[f64]) -> DirectionRow {
-        let l = DVector::from_column_slice(l);
-        let n = self.shape.inputs;
-        let start = self.start.tr_mul(&l);
-        let inputs = self.inputs.columns(0, n * self.samples).tr_mul(&l);
-        let (mut sum, mut total) = (vec![0.0; n], vec![0.0; n]);
-        for (at, x) in inputs.iter().enumerate() {
-            sum[at % n] += x;
-            total[at % n] += x.abs();
-        }
-        if self.disturbance == Disturbance::Constant {
-            total = sum.iter().map(|x| x.abs()).collect();
-        }
-        let radius = start.iter().map(|x| x.abs()).chain(total).collect();
-        DirectionRow { centre: start.iter().copied().chain(sum).collect(), radius }
-    }
-
-    fn node(&self, sample: usize) -> Node {
-        let Shape { states, inputs: n } = self.shape;
-        let used = self.inputs.columns(0, n * self.samples);
-        let input = match self.disturbance {
-            Disturbance::Constant => {
-                let mut sum = DMatrix::zeros(states, n);
-                (0..self.samples).for_each(|j| sum += used.columns(j * n, n));
-                sum.as_slice().repeat(self.samples)
-            }
-            Disturbance::Sample | Disturbance::Measurable => used.iter().copied().collect(),
-        };
-        let signs = |values: Vec<f64>| values.into_iter().map(f64::signum).collect();
-        Node {
-            sample,
-            start: signs(self.start.transpose().as_slice().to_vec()),
-            input: signs(input),
-        }
     }
 }

@@ -9,7 +9,8 @@ use crate::data::case::Case;
 use crate::data::side::Side;
 use crate::nominal::simulate::BOUND;
 use crate::sets::UncertaintySets;
-use crate::tube::sensitivity::{Many, Node, Sensitivity};
+use crate::tube::sensitivity::{Many, Sensitivity};
+use crate::tube::state_sensitivities::Node;
 
 /// Rows whose recordings stay below this part of the linearised radius get no correction: a small
 /// one would not make them decide.

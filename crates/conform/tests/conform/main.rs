@@ -7,6 +7,7 @@ mod fit;
 mod fit_schunk;
 mod fold;
 mod friction;
+mod guarantees;
 mod model_file;
 mod next_motion;
 mod nonlinear;

@@ -15,10 +15,10 @@ use reachtube_conform::{
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use tempfile::TempDir;
 
-const SUITES: [&str; 4] = ["a", "b", "c", "d"];
+pub(crate) const SUITES: [&str; 4] = ["a", "b", "c", "d"];
 
 /// Four suites of six runs on one grid, in which disturbances of `inputs` N m act.
-fn recorded(inputs: [f64; 4]) -> TempDir {
+pub(crate) fn recorded(inputs: [f64; 4]) -> TempDir {
     let (folder, robot, times) = (tempfile::tempdir().unwrap(), two_joints(), grid(0.01, 40));
     let suite = |index: usize| -> (&str, Vec<Recorded>) {
         let arm = Disturbed { robot: &robot, times: &times, start: 0.01, input: inputs[index] };
@@ -29,13 +29,13 @@ fn recorded(inputs: [f64; 4]) -> TempDir {
     folder
 }
 
-fn settings(calibrate: &[&str]) -> Settings {
+pub(crate) fn settings(calibrate: &[&str]) -> Settings {
     let calibrate = calibrate.iter().map(|name| name.to_string()).collect();
     Settings { calibrate, ..Settings::new(Torque::Compensated, 2) }
 }
 
 /// Checks the suites `names` against the model of a problem.
-fn check_of(folder: &TempDir, model: &Model, names: &[&str]) -> Check {
+pub(crate) fn check_of(folder: &TempDir, model: &Model, names: &[&str]) -> Check {
     let others = read(&two_joints(), folder.path(), names, &model.settings);
     let tube = Tube::new(&others, model.sets()).unwrap();
     check(model, &others, &tube).unwrap()
@@ -191,7 +191,7 @@ fn motions_of_one_run_decide_nothing_at_their_first_sample() {
         Witness { suite, sample: 0, excess: 0.0, radius: 1e-16, ..touches.clone() }
     };
     let all: Vec<Witness> = (0..70).map(first).collect();
-    let deciding = |tight: &[Witness]| Trust::of_fit(problem.recordings(), tight).deciding;
+    let deciding = |tight: &[Witness]| Trust::of_fit(&problem, tight).deciding;
     assert_eq!(deciding(&[found.tight.clone(), all.clone()].concat()), needed);
     assert_eq!(deciding(&all), 70);
 }

@@ -79,7 +79,7 @@ impl Exemplary {
 
     /// Returns the number of joints.
     #[must_use]
-    pub fn joints(&self) -> usize {
+    pub(crate) fn joints(&self) -> usize {
         self.figure.joints.len()
     }
 

@@ -1,5 +1,6 @@
 //! Tables and figures of the paper, reproduced, and the bounds for the next motion put to the test.
 
+mod chosen_model;
 mod claims;
 mod coverage;
 pub(crate) mod error;

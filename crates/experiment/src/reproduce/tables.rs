@@ -154,7 +154,10 @@ impl Coverage {
                 row.statement.clone(),
                 format!("{:.3}", row.mean_bound),
                 format!("{:.3}", row.mean_truth),
-                format!("{:.3}", row.nominal),
+                match row.if_fixed {
+                    None => format!("{:.3}", row.nominal),
+                    Some(bound) => format!("{:.3} (not {bound:.3})", row.nominal),
+                },
                 format!("{:.3} ± {:.3}", row.observed, row.standard_error),
                 if row.holds() { "yes".into() } else { "NO".into() },
             ]

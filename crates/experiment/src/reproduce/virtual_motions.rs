@@ -1,7 +1,11 @@
 //! Small campaigns of the virtual robot.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
-use reachtube_recordings::{MemoryRuns, Run};
+use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, Tube, Verdict};
+use reachtube_recordings::{MemoryRuns, Run, Torque};
+use reachtube_robot::Robot;
 
 use crate::error::Result;
 use crate::motion::{Motion, SAMPLE_TIME};
@@ -41,6 +45,31 @@ pub(super) fn virtual_motions(
         }
     }
     Ok(motions)
+}
+
+/// Returns the names of some motions.
+pub(super) fn motion_names(range: Range<usize>) -> Vec<String> {
+    range.map(|m| format!("M{m}")).collect()
+}
+
+/// Returns the problem of some of the motions, of which the first `calibrating` are held out.
+pub(super) fn problem(
+    motions: MemoryRuns,
+    used: Range<usize>,
+    calibrating: usize,
+) -> Result<Problem> {
+    let calibrate = motion_names(used.start..used.start + calibrating);
+    let settings = Settings { calibrate, ..Settings::new(Torque::Compensated, 6) };
+    let setup = Setup::new(Robot::lwa4p(), settings)?;
+    Ok(Problem::read(setup, Box::new(motions), &motion_names(used), Keep::Needed, &Silent)?)
+}
+
+/// Returns the part of the next motions that leave the sets.
+pub(super) fn truth(next: &Problem, tube: &Tube) -> Result<f64> {
+    let tube = Tube::new(next, tube.sets.clone())?;
+    let verdict = Verdict::new(next, &tube)?;
+    let leaving = verdict.suites.iter().filter(|suite| !suite.holds()).count();
+    Ok(leaving as f64 / verdict.suites.len() as f64)
 }
 
 /// Draws a motion and its runs.

@@ -21,7 +21,7 @@ pub struct RisingFriction {
 impl RisingFriction {
     /// Returns v1, v2 and v3 for parameters `x`.
     #[must_use]
-    pub fn viscous(&self, x: &[f64]) -> [f64; 3] {
+    pub(crate) fn viscous(&self, x: &[f64]) -> [f64; 3] {
         let value = |k: usize| self.known[k] + self.columns[k].map_or(0.0, |column| x[column]);
         [value(0), value(1), value(2)]
     }

@@ -119,6 +119,7 @@ impl Source {
         let (file, run, notes) = match &self.content {
             Content::Memory(log) => {
                 let mut log = RawLog::clone(log);
+                log.run = log.run.with_digest();
                 add_turns(&mut log.run, &self.turns);
                 return Ok(log);
             }
@@ -131,7 +132,7 @@ impl Source {
                 (path.clone(), run, notes)
             }
         };
-        let mut run = starting_at(run, self.from);
+        let mut run = starting_at(run.with_digest(), self.from);
         check(&file, &run, robot)?;
         add_turns(&mut run, &self.turns);
         let run = if self.compensated { with_compensation(run, robot) } else { run };

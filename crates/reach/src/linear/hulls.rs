@@ -75,7 +75,7 @@ impl ReachSets {
     }
 
     /// Encloses the centre of the hull at sample k in state i.
-    pub fn centre(&self, k: usize, i: usize) -> Interval {
+    pub(crate) fn centre(&self, k: usize, i: usize) -> Interval {
         self.centre[k * self.dimension + i]
     }
 

@@ -90,6 +90,15 @@ impl Propagation {
         self.samples.exponential(k)
     }
 
+    /// Returns midpoints and radii of e^{A t_k}, each N x N, column by column.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer: the exact entry is within the radius of the midpoint.
+    pub(crate) fn exponential_ball(&self, k: usize) -> (&[f64], &[f64]) {
+        self.samples.exponential_ball(k)
+    }
+
     /// Returns Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ, N x m.
     ///
     /// # Guarantee

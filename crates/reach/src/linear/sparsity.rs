@@ -19,13 +19,20 @@ pub(crate) fn connected(a: &DMatrix<f64>) -> DMatrix<bool> {
     linked
 }
 
+/// Marks the entries that can be non-zero in Aⁱ B for some i >= 0; with A in place of B, in some
+/// power of A from the first on.
+pub(crate) fn reached(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<bool> {
+    let linked = connected(a);
+    let reached =
+        |i: usize, j: usize| (0..a.nrows()).any(|via| linked[(i, via)] && b[(via, j)] != 0.0);
+    DMatrix::from_fn(a.nrows(), b.ncols(), reached)
+}
+
 /// Marks the entries of [e^{Aτ}, e^{Aτ} B], N x (N + m), that are zero for every τ.
 pub(crate) fn always_zero(system: &LinearSystem) -> DMatrix<bool> {
     let (n, m) = (system.states(), system.inputs());
-    let linked = connected(system.a());
-    let reached =
-        |i: usize, j: usize| (0..n).any(|via| linked[(i, via)] && system.b()[(via, j)] != 0.0);
-    DMatrix::from_fn(n, n + m, |i, j| if j < n { !linked[(i, j)] } else { !reached(i, j - n) })
+    let (linked, reached) = (connected(system.a()), reached(system.a(), system.b()));
+    DMatrix::from_fn(n, n + m, |i, j| if j < n { !linked[(i, j)] } else { !reached[(i, j - n)] })
 }
 
 #[cfg(test)]
@@ -39,5 +46,7 @@ mod tests {
         let chain = dmatrix![0.0, 1.0, 0.0; 0.0, 0.0, 1.0; 0.0, 0.0, 0.0];
         let expected = dmatrix![true, true, true; false, true, true; false, false, true];
         assert_eq!(connected(&chain), expected);
+        let of_powers = dmatrix![false, true, true; false, false, true; false, false, false];
+        assert_eq!(reached(&chain, &chain), of_powers);
     }
 }

@@ -176,6 +176,31 @@ impl Flowpipe {
         self
     }
 
+    /// Returns the flowpipe on `grid` of one on the same grid with `parts` parts of each step.
+    pub(crate) fn on_whole_steps(self, grid: &TimeGrid, parts: usize) -> Self {
+        let n = self.dimension;
+        let samples = self.len().div_ceil(parts);
+        let mut whole = Self::empty(n, samples);
+        for k in 0..samples {
+            whole.samples.extend_from_slice(self.sample(k * parts));
+            if k + 1 < samples {
+                let side = |i: usize| {
+                    let of_parts = (1..parts).map(|part| self.step(k * parts + part)[i]);
+                    of_parts.fold(self.step(k * parts)[i], |hull, part| hull.hull(part))
+                };
+                whole.steps.extend((0..n).map(side));
+            }
+        }
+        whole.generators = self.generators;
+        whole.outcome = match self.outcome {
+            FlowpipeOutcome::Failed { state, widths, .. } => {
+                FlowpipeOutcome::Failed { time: grid.times()[samples - 1], state, widths }
+            }
+            reached => reached,
+        };
+        whole
+    }
+
     fn empty(n: usize, samples: usize) -> Self {
         Self {
             dimension: n,

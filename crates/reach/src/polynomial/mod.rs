@@ -1,6 +1,7 @@
 //! Reachable sets of polynomial systems with uncertain inputs.
 
 pub(crate) mod arguments;
+pub(crate) mod automatic;
 pub(crate) mod directions;
 pub(crate) mod expansion;
 pub(crate) mod flowpipe;
@@ -11,6 +12,7 @@ pub(crate) mod system;
 pub(crate) mod taylor;
 pub(crate) mod uncertain_input;
 
+pub use automatic::AutomaticFlowpipe;
 pub use flowpipe::{Flowpipe, FlowpipeOutcome, Visit};
 pub use settings::{FlowpipeMethod, FlowpipeSettings};
 pub use system::PolynomialSystem;

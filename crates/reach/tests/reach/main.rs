@@ -1,6 +1,7 @@
 //! Enclosures against exact rational numbers, closed forms, brute force and simulated disturbances.
 
 mod arm;
+mod automatic;
 mod disturbances;
 mod edges;
 mod exponential;

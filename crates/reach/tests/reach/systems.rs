@@ -85,3 +85,39 @@ pub(crate) fn laub_loomis_components() -> Vec<Polynomial> {
         times(1.8, x(6)) - times(1.5, &(x(2) * x(7))),
     ]
 }
+
+/// Returns two coupled Van der Pol oscillators, ẍ = (1 - x²) ẋ - x ± b (x₂ - x₁), with the constant
+/// coupling b as the last of 5 states (ARCH-COMP, "CVDP23").
+pub(crate) fn coupled_van_der_pol() -> PolynomialSystem {
+    PolynomialSystem::new(5, 0, &coupled_van_der_pol_components()).unwrap()
+}
+
+/// Returns ẋ of [`coupled_van_der_pol`].
+pub(crate) fn coupled_van_der_pol_components() -> Vec<Polynomial> {
+    let z = variables(5, 3);
+    let rate = |x: &Polynomial, y: &Polynomial, other: &Polynomial| {
+        y - &(&(x * x) * y) - x.clone() + &z[4] * &(other - x)
+    };
+    vec![
+        z[1].clone(),
+        rate(&z[0], &z[1], &z[2]),
+        z[3].clone(),
+        rate(&z[2], &z[3], &z[0]),
+        constant(0.0),
+    ]
+}
+
+/// Returns the production-destruction system ẋ = -r, ẏ = r - 0.3 y, ż = 0.3 y with
+/// r = x y / (1 + x) (ARCH-COMP, "PRDE"); w = 1 / (1 + x) is a fourth state, so that r = (1 - w) y.
+pub(crate) fn production_destruction() -> PolynomialSystem {
+    PolynomialSystem::new(4, 0, &production_destruction_components()).unwrap()
+}
+
+/// Returns ẋ of [`production_destruction`].
+pub(crate) fn production_destruction_components() -> Vec<Polynomial> {
+    let z = variables(4, 4);
+    let (y, w) = (&z[1], &z[3]);
+    let rate = y - &(w * y);
+    let decay = &constant(0.3) * y;
+    vec![-rate.clone(), &rate - &decay, decay, &(w * w) * &rate]
+}

@@ -9,7 +9,7 @@ use reachtube_scalar::Interval;
 
 use crate::arm::arm;
 use crate::simulated_case::{contain_ten_thousand, random_case, set, with_zonotopes};
-use crate::systems::{self, laub_loomis, linear, van_der_pol, variables};
+use crate::systems::{self, coupled_van_der_pol, laub_loomis, linear, van_der_pol, variables};
 
 fn of_order(order: u32) -> FlowpipeSettings {
     FlowpipeSettings {
@@ -179,6 +179,40 @@ fn a_flowpipe_that_stops_early_is_an_outcome() {
     let last = flowpipe.len() - 1;
     assert_eq!(grid.times()[last], *time);
     assert!(flowpipe.sample(last)[0].contains(1.0 / (1.0 / 1.1 - time)));
+}
+
+/// The coupling of two oscillators is a state whose rate is 0.
+#[test]
+fn a_constant_state_stays_constant() {
+    let start = set(&[1.4, 2.4, 1.4, 2.4, 70.0], &[0.15, 0.05, 0.15, 0.05, 10.0]);
+    let grid = TimeGrid::uniform(0.01, 101);
+    for settings in [FlowpipeSettings::default(), of_order(4)] {
+        let flowpipe = propagate(&coupled_van_der_pol(), &grid, &start, &settings);
+        assert!(flowpipe.is_reached(), "{:?} {:?}", settings.method, flowpipe.outcome());
+        let near = Interval::new(60.0 - 1e-9, 80.0 + 1e-9).unwrap();
+        let sides = (0..101).map(|k| flowpipe.sample(k)[4]);
+        let tubes = (0..100).map(|k| flowpipe.step(k)[4]);
+        for side in sides.chain(tubes) {
+            assert!(near.encloses(&side), "{:?}: {side:?}", settings.method);
+            assert!(side.contains(60.0) && side.contains(80.0), "{side:?}");
+        }
+    }
+}
+
+/// Linearisation and Taylor models enclose the same system from a set of width 0 in two states.
+#[test]
+fn sets_of_width_zero_in_some_states_are_propagated() {
+    let start = set(&[9.75, 0.01, 0.01, 0.093], &[0.25, 0.0, 0.0, 0.0025]);
+    let f = systems::production_destruction_components();
+    for settings in [FlowpipeSettings::default(), of_order(3)] {
+        let system = systems::production_destruction();
+        let flowpipe = contain_ten_thousand(&system, &f, start.clone(), (0.05, 201), &settings);
+        assert!(
+            flowpipe.sample(200).iter().all(|side| side.width() < 1.0),
+            "{:?}",
+            settings.method
+        );
+    }
 }
 
 #[test]

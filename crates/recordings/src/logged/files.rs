@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::assignment::quantity_of_file;
 use super::dialect::Dialect;
 use super::name::{ColumnName, Quantity};
-use crate::reading::is_strict_header;
+use crate::header::is_strict_header;
 
 /// Bytes in which a header ends.
 const HEADER_BYTES: u64 = 1 << 16;

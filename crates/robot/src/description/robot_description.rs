@@ -4,6 +4,7 @@ use super::joint_description::{Convention, JointDescription};
 use crate::joint_kind::JointKind;
 use crate::lock::LockedJoint;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The version of the format that this crate writes, and the only one that it reads.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -49,12 +50,24 @@ pub struct RobotDescription {
     /// Joints that are held at a position, whose links belong to the links that carry them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub locked: Vec<LockedJoint>,
+    /// SHA-256 of the recordings that parameters were identified from or fitted to, sorted; empty
+    /// if they are unknown. Nothing is computed from them: a bound for motions that were held out
+    /// does not hold for a robot that has seen them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub identified_from: Vec<String>,
     /// The joints from base to tip, each with the link it moves.
     #[serde(rename = "joint")]
     pub joints: Vec<JointDescription>,
 }
 
 impl RobotDescription {
+    /// Adds recordings, by their SHA-256, that parameters were identified from or fitted to.
+    pub fn add_identified_from(&mut self, digests: impl IntoIterator<Item = String>) {
+        let known = std::mem::take(&mut self.identified_from);
+        let all: BTreeSet<String> = known.into_iter().chain(digests).collect();
+        self.identified_from = all.into_iter().filter(|digest| !digest.is_empty()).collect();
+    }
+
     /// Returns the kinds of the joints from base to tip.
     #[must_use]
     pub fn kinds(&self) -> Vec<JointKind> {

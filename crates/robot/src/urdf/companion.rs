@@ -25,6 +25,9 @@ pub(super) struct Companion {
     gravity: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     parameters: Option<ParameterSet>,
+    /// SHA-256 of the recordings that values were identified from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    identified_from: Vec<String>,
     #[serde(rename = "joint", default)]
     joints: Vec<Drive>,
 }
@@ -71,6 +74,7 @@ impl Companion {
     pub(super) fn apply(&self, description: &mut RobotDescription) -> Result<(), RobotError> {
         description.gravity = self.gravity.unwrap_or(description.gravity);
         description.parameters = self.parameters.unwrap_or(description.parameters);
+        description.add_identified_from(self.identified_from.iter().cloned());
         let names: Vec<_> = description.joints.iter().map(|j| format!("`{}`", j.name)).collect();
         for drive in &self.joints {
             let joint = description.joints.iter_mut().find(|j| j.name == drive.name);
@@ -106,6 +110,7 @@ impl Companion {
             lock: locks.iter().map(|lock| (lock.joint.clone(), lock.position)).collect(),
             gravity: Some(description.gravity),
             parameters: Some(description.parameters),
+            identified_from: description.identified_from.clone(),
             joints: description.joints.iter().map(drive).collect(),
         }
     }

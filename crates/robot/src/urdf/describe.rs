@@ -48,6 +48,7 @@ impl<'a> UrdfTree<'a> {
             convention: Convention::Standard,
             gravity: self.gravity(chain.base)?,
             locked: self.locked(),
+            identified_from: Vec::new(),
             joints,
         };
         Ok((description, moved))

@@ -53,6 +53,7 @@ pub(crate) fn robots() -> impl Strategy<Value = Robot> {
             convention: Default::default(),
             gravity,
             locked: Vec::new(),
+            identified_from: Vec::new(),
             joints: joints
                 .into_iter()
                 .enumerate()

@@ -55,6 +55,7 @@ pub(crate) fn description(oracle: &Value) -> RobotDescription {
         convention: Convention::Standard,
         gravity: triple(&oracle["gravity"]),
         locked: Vec::new(),
+        identified_from: Vec::new(),
         joints: oracle["links"].as_array().unwrap().iter().map(joint).collect(),
     }
 }

@@ -12,7 +12,8 @@ pub(super) const LARGE: f64 = 1e5;
 /// Decimals of the uncertainty sets in Table II of the paper.
 const PAPER_DECIMALS: i32 = 4;
 
-/// Formats a number with four decimals, or with an exponent where it is very small or large.
+/// Formats a number for prose: with four digits before and after the point together, and at most
+/// four decimals; all digits before the point; with an exponent where it is very small or large.
 ///
 /// # Examples
 ///
@@ -20,12 +21,16 @@ const PAPER_DECIMALS: i32 = 4;
 /// use reachtube_scalar::number::four_decimals;
 ///
 /// assert_eq!([-0.25, 2.1e-9].map(four_decimals), ["-0.2500", "2.1e-9"]);
+/// assert_eq!([6048.047985, 36.123].map(four_decimals), ["6048", "36.12"]);
 /// ```
 #[must_use]
 pub fn four_decimals(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
-        size if (SMALL..LARGE).contains(&size) => format!("{value:.4}"),
+        size if (SMALL..LARGE).contains(&size) => {
+            let whole = if size < 1.0 { 0 } else { 1 + size.log10().floor() as usize };
+            format!("{value:.*}", 4usize.saturating_sub(whole))
+        }
         _ => format!("{value:.1e}"),
     }
 }
@@ -134,7 +139,9 @@ mod tests {
     #[test]
     fn small_numbers_keep_their_digits() {
         let shown = [0.0, 2.1e-9, -0.25, 12.34567, 3.2e7].map(four_decimals);
-        assert_eq!(shown, ["0", "2.1e-9", "-0.2500", "12.3457", "3.2e7"]);
+        assert_eq!(shown, ["0", "2.1e-9", "-0.2500", "12.35", "3.2e7"]);
+        let shown = [0.99999, 9.99999, 999.96, 4687.9665].map(four_decimals);
+        assert_eq!(shown, ["1.0000", "10.000", "1000.0", "4688"]);
     }
 
     #[test]

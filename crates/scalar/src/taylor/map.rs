@@ -33,8 +33,6 @@ pub struct PolynomialMap<C = f64> {
     nodes: Vec<Node>,
     /// One group for each [`GROUP`] consecutive components.
     groups: Vec<MonomialGroup<C>>,
-    /// Number of non-constant terms of all components together.
-    term_count: usize,
 }
 
 /// Number of components that are summed together. Neighbouring components mostly have the same
@@ -103,7 +101,6 @@ impl<C: Scalar> PolynomialMap<C> {
             constants,
             nodes: vec![],
             groups,
-            term_count: 0,
         };
         map.fill(packing, monomials);
         map
@@ -125,7 +122,6 @@ impl<C: Scalar> PolynomialMap<C> {
             let power = starts[i] + packing.exponent(m, i) - 1;
             self.nodes.push(Node { parent, power });
             let number = self.nodes.len() as u32;
-            self.term_count += terms.len();
             for (component, c) in terms {
                 self.groups[component as usize / GROUP].push(number, component as usize % GROUP, c);
             }
@@ -136,11 +132,6 @@ impl<C: Scalar> PolynomialMap<C> {
     /// Returns the number of components m.
     pub fn components(&self) -> usize {
         self.constants.len()
-    }
-
-    /// Returns the number of non-constant terms of all components together.
-    pub fn term_count(&self) -> usize {
-        self.term_count
     }
 
     /// Returns scratch memory for evaluation over T.

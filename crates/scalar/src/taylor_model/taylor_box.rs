@@ -39,16 +39,6 @@ impl TaylorBox {
         Self { space: Arc::clone(space), sides: sides.to_vec() }
     }
 
-    /// Returns the space of the polynomials of the models.
-    pub fn space(&self) -> &Arc<TaylorSpace> {
-        &self.space
-    }
-
-    /// Returns the sides (k intervals).
-    pub fn sides(&self) -> &[Interval] {
-        &self.sides
-    }
-
     /// Returns variable i as the model mid_i + rad_i t_i.
     ///
     /// A point is a constant. An unbounded side becomes a remainder.

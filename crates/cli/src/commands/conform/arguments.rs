@@ -238,7 +238,7 @@ pub(crate) struct Arguments {
     pub method: Method,
     /// Search for a motion of the model itself near each recording, within these tolerances in rad
     /// and rad/s: 2 numbers, 0 or more, or none [default: none for a linear model, otherwise
-    /// 0.001,0.01]
+    /// 0.001,0.01 for the recordings that decide the sets]
     #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "none|Q,QD")]
     pub explain: Option<String>,
     /// Save the progress of a long search to this file, and continue from it if it exists

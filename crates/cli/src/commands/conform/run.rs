@@ -33,6 +33,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::notes(&answer.problem.recordings().notes);
     let mut written: Vec<&Path> = Vec::new();
     if let Some(path) = &args.out {
+        answer.model = answer.model.among_others(path);
         answer.model.save(path)?;
         written.push(path);
     }

@@ -46,12 +46,13 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Returns how often each bound was wrong, beside how often it may be.
 fn summary(coverage: &Coverage) -> String {
-    let Coverage { options, motions, held_out, calibrating, .. } = coverage;
+    let Coverage { options, motions, held_out, calibrating, chosen_by, .. } = coverage;
     format!(
         "{} campaigns of {motions} random motions (seed {}); the hold-out bound is for sets found \
          on {} of them, by the other {held_out}; the calibration bounds are for sets found on {}, \
-         scaled to hold the other {calibrating}; the truth is the part of {} further motions that \
-         leave the sets\n\n{}",
+         scaled to hold the other {calibrating}; models that were chosen in several ways are \
+         calibrated by {chosen_by} motions; the truth is the part of {} further motions that leave \
+         the sets\n\n{}",
         options.campaigns,
         options.seed,
         motions - held_out,

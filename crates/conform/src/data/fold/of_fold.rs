@@ -94,6 +94,7 @@ fn entries_of(name: &str, fold: &SuiteFold) -> impl Iterator<Item = (usize, RunE
             sha256: None,
             simulated: false,
             noise: None,
+            origin: None,
             order: *order,
             line: u64::from(*place) + 1,
         };

@@ -1,14 +1,19 @@
 //! What a check says beside its verdict.
 
 use reachtube_robot::JointKind;
-use reachtube_scalar::number::at_least;
+use reachtube_scalar::number::{at_least, counted};
 
+use crate::model::other_data::{OtherData, Replaced};
 use crate::next_motion::growth::Growth;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
+use crate::result::findings::words::listed;
 
 /// Factor beyond which widening a set is no remedy.
 const MOST_GROWTH: f64 = 100.0;
+
+/// Largest number of recordings that are named.
+const MOST_FILES: usize = 3;
 
 impl Finding {
     /// Which set would have to grow to enclose the recordings, and by how much.
@@ -67,9 +72,58 @@ impl Finding {
         Self::new(Severity::Warning, Code::OtherStart, text).at(format!("suite {suite}"))
     }
 
+    /// What differs from the recordings that the model was made from.
+    pub(crate) fn other_recordings(other: &OtherData) -> Self {
+        let OtherData { missing, replaced, deciding, added, shares_any, starts_alike } = other;
+        let changed: Vec<String> = replaced.iter().map(changed).collect();
+        let mut parts = Vec::new();
+        if !missing.is_empty() {
+            parts.push(format!("missing {}", few(missing)));
+        }
+        if !changed.is_empty() {
+            parts.push(format!("other content in {}", few(&changed)));
+        }
+        if *added > 0 {
+            parts.push(format!("{} that it does not list", counted(*added, "recording")));
+        }
+        let mut text = format!("The recordings differ from the model's own: {}.", parts.join("; "));
+        if !deciding.is_empty() {
+            let verb = if deciding.len() == 1 { "decides" } else { "decide" };
+            text += &format!(" In the model, {} {verb} the sets.", few(deciding));
+        }
+        if *starts_alike {
+            text += " They start where the model's do, to the last bit. They may be the same \
+                     recordings, cut or edited, so they count as used in the fit.";
+        }
+        let is_doubtful = *shares_any || *starts_alike;
+        let severity = if is_doubtful { Severity::Warning } else { Severity::Info };
+        Self::new(severity, Code::OtherRecordings, text)
+            .with("missing", missing.len() as f64)
+            .with("replaced", replaced.len() as f64)
+            .with("deciding", deciding.len() as f64)
+            .with("added", *added as f64)
+    }
+
     /// A note on the recordings.
     pub(crate) fn recordings(note: &str) -> Self {
         Self::new(Severity::Info, Code::Recordings, note)
+    }
+}
+
+/// Names a recording whose content is not the model's.
+fn changed(run: &Replaced) -> String {
+    match run.samples {
+        [own, at_hand] if own == at_hand => run.file.clone(),
+        [own, at_hand] => format!("{} ({at_hand} samples, {own} in the model's)", run.file),
+    }
+}
+
+/// Lists the first recordings and counts the others.
+fn few(files: &[String]) -> String {
+    let named = listed(&files[..files.len().min(MOST_FILES)]);
+    match files.len().saturating_sub(MOST_FILES) {
+        0 => named,
+        others => format!("{named} and {others} more"),
     }
 }
 

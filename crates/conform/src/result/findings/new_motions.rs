@@ -6,7 +6,7 @@ use crate::data::settings::Notion;
 use crate::model::file::Model;
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::rates::{FEWEST_MOTIONS, Rate, Rates};
-use crate::next_motion::trust::Trust;
+use crate::next_motion::trust::{Trust, TrustKind};
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::listed;
@@ -24,7 +24,7 @@ const LARGEST_BOUND: f64 = 0.999;
 impl Finding {
     /// Which motions calibrated the sets, and by what factor.
     pub(crate) fn calibrated(calibration: &Calibration) -> Self {
-        let Calibration { fitted, gauges, factor, input_only } = calibration;
+        let Calibration { fitted, gauges, factor, input_only, .. } = calibration;
         let gauge = |gauge: &Gauge| format!("{} {}", gauge.motion, at_least(gauge.gauge));
         let mut list: Vec<String> = gauges.iter().take(MOST_GAUGES).map(gauge).collect();
         if gauges.len() > MOST_GAUGES {
@@ -67,12 +67,18 @@ impl Finding {
                 .with("probability", *bound)
                 .with("confidence", *confidence)
         };
-        if let Some(average) = trust.average_probability {
+        if let Some(average) = trust.average_probability.filter(|average| *average < 1.0) {
+            let (m, of) = (trust.candidates(), motions + 1);
+            let several = match m {
+                1 => String::new(),
+                m => format!(
+                    " This counts the {m} models in the folder that these motions calibrated."
+                ),
+            };
             let text = format!(
-                "The next motion leaves the {set} with probability at most {average:.3} (1 in \
-                 {}), on average over the {motions} held-out {of_motions}; given these, at most \
-                 {bound:.3} at confidence {percent:.0} %. Basis: {basis}.",
-                motions + 1,
+                "The next motion leaves the {set} with probability at most {average:.3} ({m} in \
+                 {of}), on average over the {motions} held-out {of_motions}; given these, at most \
+                 {bound:.3} at confidence {percent:.0} %.{several} Basis: {basis}.",
             );
             return with_numbers(Code::NextMotion, text).with("average_probability", average);
         }
@@ -95,9 +101,13 @@ impl Finding {
             );
             return with_numbers(Code::NoGuarantee, text);
         }
+        let leaves = match trust.kind {
+            Some(TrustKind::Indication) => "An indication and no guarantee: the next motion leaves",
+            _ => "The next motion leaves",
+        };
         let text = format!(
-            "The next motion leaves the {set} with probability at most {bound:.3}, at confidence \
-             {percent:.0} %: {counted}. Basis: {basis}."
+            "{leaves} the {set} with probability at most {bound:.3}, at confidence {percent:.0} \
+             %: {counted}. Basis: {basis}."
         );
         with_numbers(Code::NextMotion, text)
     }
@@ -107,9 +117,10 @@ impl Finding {
     pub(crate) fn next_motion_in_brief(trust: &Trust, role: &str) -> String {
         let Trust { motions, deciding, violation_probability: bound, confidence, .. } = trust;
         let of_motions = counted(*motions, "motion");
-        if trust.average_probability.is_some() {
+        if trust.average_probability.is_some_and(|average| average < 1.0) {
             return format!(
-                "at most 1 in {} leaves the sets, on average over the {of_motions} held out",
+                "at most {} in {} leaves the sets, on average over the {of_motions} held out",
+                trust.candidates(),
                 motions + 1
             );
         }
@@ -120,8 +131,12 @@ impl Finding {
             true if *motions == 1 => "no guarantee: 1 motion is too few".into(),
             true => format!("no guarantee: {of_motions} are too few"),
             false => format!(
-                "the next leaves the sets with probability at most {bound:.3}, at confidence {:.0} \
-                 % ({deciding} of {of_motions} {role})",
+                "{}the next leaves the sets with probability at most {bound:.3}, at confidence \
+                 {:.0} % ({deciding} of {of_motions} {role})",
+                match trust.kind {
+                    Some(TrustKind::Indication) => "an indication and no guarantee: ",
+                    _ => "",
+                },
                 100.0 * confidence
             ),
         }

@@ -27,9 +27,11 @@ impl Finding {
         Self::new(Severity::Info, Code::Touching, text).with("values", model.tight.len() as f64)
     }
 
-    /// How close motions of the model come to the recordings; `tolerance` comes from the settings.
+    /// How close motions of the model come to the recordings, or to `some` of them; `tolerance`
+    /// comes from the settings.
     pub(crate) fn explanations(
         explained: &Explained,
+        some: &str,
         tolerance: Tolerance,
         kinds: &[JointKind],
     ) -> Self {
@@ -53,10 +55,10 @@ impl Finding {
         };
         let [of_q, of_qd] = [median(|r| r.position), median(|r| r.velocity)];
         let text = format!(
-            "For {runs} of the {count} recordings, a motion of the model itself (start in X0, \
-             input in U, held over each sample) was found within {} {q} and {} {qd}. The closest \
-             motions found differ by {of_q:.2e} {q} and {of_qd:.2e} {qd} in the median, and by {} \
-             {q} and {} {qd} for {}.",
+            "For {runs} of the {count} recordings{some}, a motion of the model itself (start in \
+             X0, input in U, held over each sample) was found within {} {q} and {} {qd}. The \
+             closest motions found differ by {of_q:.2e} {q} and {of_qd:.2e} {qd} in the median, \
+             and by {} {q} and {} {qd} for {}.",
             tolerance.position,
             tolerance.velocity,
             size(worst.position),

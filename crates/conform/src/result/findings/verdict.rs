@@ -6,7 +6,7 @@ use reachtube_scalar::number::{at_least, counted, four_decimals, plural};
 
 use crate::claim::verdict::Verdict;
 use crate::claim::witness::{PointVerdict, PointWitness};
-use crate::data::settings::Notion;
+use crate::data::settings::{Notion, Settings};
 use crate::explain::trace::TraceVerdict;
 use crate::model::file::Model;
 use crate::result::code::Code;
@@ -56,13 +56,15 @@ impl Finding {
             }
         };
         let text = format!(
-            "{}: {}; {} of {rows} rows (suite, sample, state) {how}, at samples",
+            "{}: {}; {} of {rows} rows (suite, sample, state) {how}, at samples{}",
             Self::outcome_of_fit(model),
             Self::recordings_of_fit(model),
             rows - violations.count,
+            model.settings.until_words(),
         );
         let (severity, code) = outcome(model.verified);
         Self::new(severity, code, text)
+            .with("until", model.settings.until.unwrap_or(f64::INFINITY))
             .with("recordings", *runs as f64)
             .with("rows", *rows as f64)
             .with("rows_outside", violations.count as f64)
@@ -99,17 +101,19 @@ impl Finding {
     }
 
     /// The verdict on recordings that are compared with a model.
-    pub(crate) fn verdict_of_check(verdict: &Verdict) -> Self {
+    pub(crate) fn verdict_of_check(verdict: &Verdict, settings: &Settings) -> Self {
         let Verdict { runs, rows, violations, .. } = verdict;
         let (severity, code) = outcome(verdict.conformant);
         let text = format!(
-            "{}: {}; {} of {rows} rows (suite, sample, state) outside the {}, at samples",
+            "{}: {}; {} of {rows} rows (suite, sample, state) outside the {}, at samples{}",
             if verdict.conformant { "conformant" } else { "not conformant" },
             counted(*runs, "recording"),
             violations.count,
-            verdict.enclosure.set_name()
+            verdict.enclosure.set_name(),
+            settings.until_words(),
         );
         Self::new(severity, code, text)
+            .with("until", settings.until.unwrap_or(f64::INFINITY))
             .with("recordings", *runs as f64)
             .with("rows", *rows as f64)
             .with("rows_outside", violations.count as f64)
@@ -253,10 +257,17 @@ impl Finding {
                     Some(fit) if fit.taken => format!("{optimal} for this nominal model"),
                     _ => optimal,
                 };
-                format!(" ({optimal}; lower bound {})", four_decimals(bound))
+                // A bound with the digits of the cost is not printed.
+                match four_decimals(bound) {
+                    bound if bound == four_decimals(cost) => format!(" ({optimal})"),
+                    bound => format!(" ({optimal}; lower bound {bound})"),
+                }
             }
             (None, Some(search)) => format!(" ({})", search_words(search)),
             (None, None) if model.calibration.is_some() => " (calibrated, not the smallest)".into(),
+            (None, None) if !model.allowance.is_empty() => {
+                " (with an allowance, not the smallest)".into()
+            }
             (None, None) => String::new(),
         };
         let text = format!(

@@ -136,15 +136,22 @@ impl SampleMatrices {
 
     /// Iterates over the lower and upper ends of some columns of pair k.
     pub(crate) fn ends(&self, k: usize, columns: Range<usize>) -> impl Iterator<Item = (f64, f64)> {
+        let (mid, rad) = self.balls(k, columns);
+        mid.iter().zip(rad).map(|(mid, rad)| (mid - rad, mid + rad))
+    }
+
+    /// Returns midpoints and radii of e^{A t_k}, each N x N, column by column.
+    pub(crate) fn exponential_ball(&self, k: usize) -> (&[f64], &[f64]) {
+        self.balls(k, 0..self.states)
+    }
+
+    /// Returns midpoints and radii of some columns of pair k.
+    fn balls(&self, k: usize, columns: Range<usize>) -> (&[f64], &[f64]) {
         let n = self.states;
         let start = |pair: usize| pair * n * (n + self.inputs);
-        let shared =
-            |k: usize| if k < self.first { k } else { self.first + (k - self.first) / SHARED };
         let columns = |pair: usize| start(pair) + columns.start * n..start(pair) + columns.end * n;
-        self.mid[columns(k)]
-            .iter()
-            .zip(&self.rad[columns(shared(k))])
-            .map(|(mid, rad)| (mid - rad, mid + rad))
+        let shared = if k < self.first { k } else { self.first + (k - self.first) / SHARED };
+        (&self.mid[columns(k)], &self.rad[columns(shared)])
     }
 
     /// Bounds the absolute value of each entry of the exponential over all samples, N x N.

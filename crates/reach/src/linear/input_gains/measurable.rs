@@ -6,17 +6,19 @@
 
 use std::borrow::Cow;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::{add_up, mul_up};
 
 use crate::linear::column_sums::{ends, running_sum};
-use crate::linear::input_gains::taylor_series::TaylorSeries;
+use crate::linear::input_gains::taylor_series::{NOISE, TaylorSeries, between};
 use crate::linear::propagation::Propagation;
+use crate::linear::sparsity::always_zero;
 use crate::linear::step::step;
 use crate::linear::system::LinearSystem;
-use crate::sets::interval_matrix::{IntervalMatrix, magnitude, point, product};
-use crate::upward::norm_upward;
+use crate::sets::interval_matrix::{IntervalMatrix, magnitude, midpoint, point, product};
+use crate::upward::{UNDERFLOW, norm_upward, relative_error, round_up_sum};
 
 /// Bound of an integral over a piece, relative to the largest entry of the cell, below which the
 /// piece is not halved.
@@ -63,8 +65,10 @@ impl<'a> Cells<'a> {
         let turning = DMatrix::from_element(system.states(), system.inputs(), Vec::new());
         let mut cells = Self { parts, series, within, integrals: Vec::new(), turning, propagation };
         let count = cells.propagation.grid().len().saturating_sub(1);
+        let products = || cells.within.products();
+        let all = (0..count).into_par_iter();
         let (integrals, turns): (Vec<_>, Vec<_>) =
-            (0..count).into_par_iter().map(|k| cells.cell(k)).unzip();
+            all.map_init(products, |products, k| cells.cell(k, products)).unzip();
         cells.integrals = integrals;
         for (k, entries) in turns.into_iter().enumerate() {
             entries.into_iter().for_each(|entry| cells.turning[entry].push(k));
@@ -73,25 +77,39 @@ impl<'a> Cells<'a> {
     }
 
     /// Computes ∫ |e^{Aτ} B| over cell k, and the entries that may change sign in it.
-    fn cell(&self, k: usize) -> (IntervalMatrix, Vec<(usize, usize)>) {
-        let start = &self.propagation.exponential(k);
+    fn cell(&self, k: usize, products: &mut Products) -> (IntervalMatrix, Vec<(usize, usize)>) {
+        let (mid, rad) = self.propagation.exponential_ball(k);
+        self.within.multiply(mid, rad, products);
+        let mut integral = self.propagation.increment(k);
+        // Entries that keep their sign, and the others with bounds of their integral.
         let h = self.propagation.grid().interval(k);
-        let range = self.within.range(start);
-        let change = self.propagation.increment(k);
-        let scale = range.iter().fold(0.0, |max: f64, x| max.max(x.mag()));
-        let negligible = NEGLIGIBLE * scale * h.hi();
-        let mut turns = Vec::new();
-        let integral = IntervalMatrix::from_fn(range.nrows(), range.ncols(), |i, j| {
-            let range = range[(i, j)];
-            if !range.contains_zero() || range == Interval::ZERO {
-                return change[(i, j)].abs();
+        let (mut scale, mut unsure) = (0.0_f64, Vec::new());
+        for (at, integral) in integral.as_mut_slice().iter_mut().enumerate() {
+            let (range, point_width) = self.within.range(products, at);
+            scale = scale.max(range.mag());
+            *integral = integral.abs();
+            if range.contains_zero() && range != Interval::ZERO {
+                let outer = mul_up(range.mag(), h.hi());
+                *integral = between(integral.lo().min(outer), outer);
+                if range.mag() > NOISE * point_width {
+                    unsure.push((at, outer));
+                }
             }
-            let entry = self.series.entry(start, i, j);
+        }
+        // Halving decides where the sign may change and the bounds are not close enough.
+        let (negligible, rows) = (NEGLIGIBLE * scale * h.hi(), integral.nrows());
+        unsure.retain(|(_, outer)| *outer > negligible);
+        if unsure.is_empty() {
+            return (integral, Vec::new());
+        }
+        let (start, mut turns) = (self.propagation.exponential(k), Vec::new());
+        for (i, j) in unsure.into_iter().map(|(at, _)| (at % rows, at / rows)) {
+            let entry = self.series.entry(&start, i, j);
             if entry.may_turn(Interval::ZERO.hull(h), negligible) {
                 turns.push((i, j));
             }
-            entry.integral_of_absolute(Interval::ZERO, h, negligible)
-        });
+            integral[(i, j)] = entry.integral_of_absolute(Interval::ZERO, h, negligible);
+        }
         (integral, turns)
     }
 
@@ -106,39 +124,96 @@ impl<'a> Cells<'a> {
 
 /// The expansion of e^{Aτ} B for 0 <= τ <= L to second order about L/2:
 /// value + slope (τ - L/2) + curvature (τ - L/2)²/2.
+///
+/// Products of interval matrices would take an interval product per term. Midpoints and radii take
+/// two floating-point matrix products (Rump, Fast and parallel interval arithmetic, BIT 39, 1999).
 struct SecondOrder {
-    value: IntervalMatrix,
-    slope: IntervalMatrix,
-    curvature: IntervalMatrix,
-    /// L in s.
-    longest: f64,
+    /// Midpoints of \[value, slope L/2, curvature L²/8\], N x 3m.
+    mid: DMatrix<f64>,
+    /// For the value, and for the sum of the two others: their errors rad + (N + 1) u |mid|, above
+    /// their magnitudes |mid| + rad, 2N x 2m.
+    spread: DMatrix<f64>,
+    /// Entries that are zero at every time, N x m.
+    zero: DMatrix<bool>,
+}
+
+/// Scratch memory of the products for one cell.
+struct Products {
+    /// Products with the midpoints, N x 3m.
+    mid: DMatrix<f64>,
+    /// \[|midpoints|, radii\] of the exponential, N x 2N.
+    sizes: DMatrix<f64>,
+    /// Errors of the products: of the value, and of the two others in sum, N x 2m.
+    error: DMatrix<f64>,
 }
 
 impl SecondOrder {
     fn new(system: &LinearSystem, longest: f64) -> Self {
         let (a, b) = (point(system.a()), point(system.b()));
+        let (n, m) = b.shape();
         let value = product(&step(system, Interval::point(0.5 * longest)).phi, &b);
         let over_cell =
             product(&step(system, Interval::ZERO.hull(Interval::point(longest))).phi, &b);
-        Self {
-            slope: product(&a, &value),
-            curvature: product(&a, &product(&a, &over_cell)),
-            value,
-            longest,
+        let half = Interval::point(longest) * 0.5;
+        let terms = [
+            value.clone(),
+            product(&a, &value) * half,
+            product(&a, &product(&a, &over_cell)) * (half.sqr() * 0.5),
+        ];
+        let (mut mid, mut spread) = (DMatrix::zeros(n, 3 * m), DMatrix::zeros(2 * n, 2 * m));
+        for (part, term) in terms.iter().enumerate() {
+            mid.columns_mut(part * m, m).copy_from(&midpoint(term));
+            for (at, x) in (0..n * m).zip(term) {
+                let (i, j) = (at % n, at / n + part.min(1) * m);
+                let rounding = mul_up(relative_error(n), x.mid().abs());
+                for (row, size) in [(i, add_up(rounding, x.rad())), (n + i, x.mag())] {
+                    spread[(row, j)] = add_up(spread[(row, j)], size);
+                }
+            }
+        }
+        let zero = always_zero(system).columns(n, m).into_owned();
+        Self { mid, spread, zero }
+    }
+
+    fn products(&self) -> Products {
+        let (n, m) = self.zero.shape();
+        Products {
+            mid: DMatrix::zeros(n, 3 * m),
+            sizes: DMatrix::zeros(n, 2 * n),
+            error: DMatrix::zeros(n, 2 * m),
         }
     }
 
-    /// Encloses `start` e^{Aτ} B over all 0 <= τ <= L.
+    /// Multiplies E, which is within `rad` of `mid` (N x N, column by column), by the three terms.
+    ///
+    /// With the floating-point product Ẽ P̃ of the midpoints,
+    /// |E P - Ẽ P̃| <= |Ẽ| (rad P + (N + 1) u |P̃|) + rad E (|P̃| + rad P).
+    fn multiply(&self, mid: &[f64], rad: &[f64], products: &mut Products) {
+        let n = self.zero.nrows();
+        let (sizes, errors) = products.sizes.as_mut_slice().split_at_mut(n * n);
+        sizes.iter_mut().zip(mid).for_each(|(size, x)| *size = x.abs());
+        errors.copy_from_slice(rad);
+        products.mid.gemm(1.0, &DMatrixView::from_slice(mid, n, n), &self.mid, 0.0);
+        products.error.gemm(1.0, &products.sizes, &self.spread, 0.0);
+    }
+
+    /// Encloses entry `at`, column by column, of E e^{Aτ} B over all 0 <= τ <= L, and returns the
+    /// width of its enclosure at one time.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    fn range(&self, start: &IntervalMatrix) -> IntervalMatrix {
-        let from_middle = Interval::centred(0.0, 0.5 * self.longest);
-        let half_square = from_middle.sqr() * 0.5;
-        product(start, &self.value)
-            + product(start, &self.slope) * from_middle
-            + product(start, &self.curvature) * half_square
+    fn range(&self, products: &Products, at: usize) -> (Interval, f64) {
+        let (entries, terms) = (self.zero.len(), 2 * self.zero.nrows());
+        if self.zero.as_slice()[at] {
+            return (Interval::ZERO, 0.0);
+        }
+        let part = |part: usize| products.mid.as_slice()[part * entries + at];
+        let error = |part: usize| {
+            round_up_sum(products.error.as_slice()[part * entries + at], terms) + UNDERFLOW
+        };
+        let radius = round_up_sum(part(1).abs() + part(2).abs() + error(0) + error(1), 4);
+        (Interval::centred(part(0), radius), 2.0 * error(0))
     }
 }
 

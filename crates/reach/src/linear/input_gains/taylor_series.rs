@@ -15,7 +15,7 @@ const DEEPEST: usize = 40;
 
 /// Largest ratio of |f| to the width of its enclosure at a point for which halving cannot decide
 /// the sign of f.
-const NOISE: f64 = 4.0;
+pub(crate) const NOISE: f64 = 4.0;
 
 /// The Taylor terms A^m B / m!, m < M, for steps up to a given length.
 pub(crate) struct TaylorSeries {
@@ -128,7 +128,7 @@ impl TimePolynomial {
         }
         let outer = mul_up(range.mag(), sub_up(b.hi(), a.lo()));
         if depth == DEEPEST || outer <= negligible || range.mag() <= NOISE * point_width {
-            return Interval::new(inner.lo().min(outer), outer).unwrap_or(Interval::ENTIRE);
+            return between(inner.lo().min(outer), outer);
         }
         let middle = (a + b) * 0.5;
         self.pieces(a, middle, negligible, depth + 1)
@@ -145,6 +145,11 @@ impl TimePolynomial {
     }
 }
 
+/// Returns [lo, hi], or all numbers where an end is not a number.
+pub(crate) fn between(lo: f64, hi: f64) -> Interval {
+    Interval::new(lo, hi).unwrap_or(Interval::ENTIRE)
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::{dmatrix, dvector};
@@ -157,10 +162,6 @@ mod tests {
         let system = LinearSystem::new(a, dmatrix![0.0; 1.0], dvector![0.0, 0.0]).unwrap();
         let series = TaylorSeries::new(&system, longest);
         [0, 1].map(|i| series.entry(&IntervalMatrix::identity(2, 2), i, 0))
-    }
-
-    fn between(a: f64, b: f64) -> Interval {
-        Interval::new(a, b).unwrap()
     }
 
     #[test]

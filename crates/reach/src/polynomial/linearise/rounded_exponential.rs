@@ -35,6 +35,9 @@ pub(crate) struct RoundedExponential {
     relative: f64,
     /// Truncation error of each entry of Φ and φ₁.
     tail: f64,
+    /// Whether each row of A has an entry other than 0. In a row without, Φ, φ₁ and P are exactly
+    /// the identity, so that a state whose derivative is zero stays constant.
+    moves: Vec<bool>,
     /// Scratch memory: A h.
     x: SquareMatrix,
     /// Scratch memory of Horner's scheme.
@@ -45,7 +48,8 @@ impl RoundedExponential {
     pub(crate) fn new(n: usize) -> Self {
         let zero = || SquareMatrix::zero(n);
         let (phi, phi1, bound, x, spare) = (zero(), zero(), zero(), zero(), zero());
-        Self { phi, phi1, bound, bound_tail: 0.0, relative: 0.0, tail: 0.0, x, spare }
+        let moves = vec![true; n];
+        Self { phi, phi1, bound, bound_tail: 0.0, relative: 0.0, tail: 0.0, moves, x, spare }
     }
 
     /// Computes the exponential for A and a step h >= 0 that is known to one rounding; returns
@@ -53,6 +57,9 @@ impl RoundedExponential {
     pub(crate) fn update(&mut self, a: &SquareMatrix, h: Interval) -> bool {
         let n = a.n;
         self.x.entries.iter_mut().zip(&a.entries).for_each(|(x, a)| *x = a * h.mid());
+        for (i, moves) in self.moves.iter_mut().enumerate() {
+            *moves = a.row(i).iter().any(|x| *x != 0.0);
+        }
         let row_sum = |i: usize| round_up_sum(a.row(i).iter().map(|x| x.abs()).sum(), n);
         let norm = mul_up((0..n).map(row_sum).fold(0.0, f64::max), h.hi());
         let (degree, tail) = truncation(norm);
@@ -91,15 +98,35 @@ impl RoundedExponential {
     pub(crate) fn bound_times(&self, v: &[f64], out: &mut [f64]) {
         self.bound.apply_absolute(v, out);
         let truncated = round_up_sum(v.iter().sum::<f64>() * self.bound_tail, v.len());
-        out.iter_mut().for_each(|out| *out = (*out + truncated) * (1.0 + f64::EPSILON));
+        for ((out, v), moves) in out.iter_mut().zip(v).zip(&self.moves) {
+            *out = if *moves { (*out + truncated) * (1.0 + f64::EPSILON) } else { *v };
+        }
+    }
+
+    /// Sets `out` to an upper bound of the rounding error of the products of Φ with vectors whose
+    /// magnitudes are at most v >= 0.
+    pub(crate) fn rounding_times(&self, v: &[f64], out: &mut [f64]) {
+        self.phi.apply_absolute(v, out);
+        let relative = product_error(v.len());
+        for (out, moves) in out.iter_mut().zip(&self.moves) {
+            *out = if *moves { round_up_sum(*out * relative, 1) } else { 0.0 };
+        }
     }
 
     /// Sets `out` to an upper bound of |error| v for v >= 0, for Φ and for φ₁.
     pub(crate) fn error_times(&self, v: &[f64], out: &mut [f64]) {
         self.bound_times(v, out);
         let truncated = round_up_sum(v.iter().sum::<f64>() * self.tail, v.len());
-        out.iter_mut().for_each(|out| *out = round_up_sum(*out * self.relative + truncated, 4));
+        for (out, moves) in out.iter_mut().zip(&self.moves) {
+            let error = round_up_sum(*out * self.relative + truncated, 4);
+            *out = if *moves { error } else { 0.0 };
+        }
     }
+}
+
+/// Bounds the relative error of a sum of n products times one more factor (Higham, section 3.1).
+fn product_error(n: usize) -> f64 {
+    (n + 4) as f64 * f64::EPSILON
 }
 
 /// Sets `sum` to Σ_{i<=degree} Xⁱ / (i + skip)! times skip!.

@@ -147,7 +147,9 @@ impl<'a> LinearisedStep<'a> {
 
     fn failure(&self, set: &ReachableZonotope) -> StepFailure {
         let widths: Vec<f64> = self.tube.iter().map(|x| x.width()).collect();
-        let growth = |i: &usize| widths[*i] / set.radius[*i].max(f64::MIN_POSITIVE);
+        // A state of width 0 that stays put must not count as the one that grew the most.
+        let least = |i: usize| f64::MIN_POSITIVE + f64::EPSILON.sqrt() * set.centre[i].abs();
+        let growth = |i: &usize| widths[*i] / set.radius[*i].max(least(*i));
         let state = (0..widths.len()).max_by(|i, j| growth(i).total_cmp(&growth(j))).unwrap_or(0);
         StepFailure { state, widths }
     }
@@ -172,12 +174,12 @@ impl<'a> LinearisedStep<'a> {
         // Stored and recent generators, with their rounding.
         set.generators.map(&exponential.phi, &mut scratch.sums);
         let [rounding, recent, errors, _] = &mut scratch.vectors;
-        exponential.phi.apply_absolute(&set.radius, rounding);
+        exponential.rounding_times(&set.radius, rounding);
         exponential.phi.apply_absolute(&set.recent_radius, recent);
         exponential.error_times(&set.radius, errors);
         let terms = set.generators.len() + 64;
         for i in 0..n {
-            let others = recent[i] + errors[i] + rounding[i] * product_error(n);
+            let others = recent[i] + errors[i] + rounding[i];
             linear_solution.end_radius[i] = round_up_sum(scratch.sums[i] + others, terms);
         }
     }
@@ -284,8 +286,8 @@ impl<'a> LinearisedStep<'a> {
         // Rounding of Φ and of its products.
         (0..n).for_each(|i| reach[i] = round_up_sum(set.radius[i] + half * drive[i], 1));
         exponential.error_times(reach, errors);
-        exponential.phi.apply_absolute(reach, spare);
-        (0..n).for_each(|i| errors[i] = round_up_sum(errors[i] + spare[i] * product_error(n), 1));
+        exponential.rounding_times(reach, spare);
+        (0..n).for_each(|i| errors[i] = round_up_sum(errors[i] + spare[i], 1));
         // |A|² e^{|A|h} times the drive.
         exponential.bound_times(drive, spare);
         linear.a.apply_absolute(spare, reach);
@@ -345,11 +347,6 @@ fn add_drift(
         let sum = row.fold(symmetric(errors[i]), |sum, (phi1, rate)| sum + *rate * *phi1);
         *end += sum * h;
     }
-}
-
-/// Bounds the relative error of a sum of n products times one more factor (Higham, section 3.1).
-fn product_error(n: usize) -> f64 {
-    (n + 4) as f64 * f64::EPSILON
 }
 
 fn symmetric(radius: f64) -> Interval {

@@ -67,7 +67,11 @@ impl Offset {
                 middle.entries[i * n + k] = entry.mid();
                 sum += (entry.rad() + rounding * entry.mag()) * radius;
             }
-            *next = round_up_sum(sum, n + 2) + f64::MIN_POSITIVE * n as f64;
+            // A row of the identity is exact.
+            let keeps = |k: usize| j[(i, k)] == Interval::point(f64::from(i == k));
+            if !(0..n).all(keeps) {
+                *next = round_up_sum(sum, n + 2) + f64::MIN_POSITIVE * n as f64;
+            }
         }
         let mut sums = vec![0.0; n];
         self.generators.map(&middle, &mut sums);
@@ -85,7 +89,8 @@ impl Offset {
     fn measure(&mut self, sums: &[f64]) {
         let terms = self.generators.len() + self.axis_lengths.len() + 64;
         for ((radius, axis), sum) in self.radius.iter_mut().zip(&self.axis_lengths).zip(sums) {
-            *radius = round_up_sum(axis + sum, terms);
+            let size = axis + sum;
+            *radius = if size == 0.0 { 0.0 } else { round_up_sum(size, terms) };
         }
         if self.generators.len() > self.most_generators {
             let surplus = self.generators.len() - self.most_generators + 15;
@@ -121,5 +126,17 @@ mod tests {
         }
         // A box, rotated at each step, would grow by the factor (cos + sin)^1000 = 1e41.
         assert!(offset.hull().all(|x| x.mag() >= 1e-3 && x.mag() < 2e-3), "{:?}", offset.radius);
+    }
+
+    #[test]
+    fn a_row_of_the_identity_is_exact() {
+        let shear = point(&dmatrix![1.0, 0.7; 0.0, 1.0]);
+        let mut offset = Offset::zero(2, usize::MAX);
+        for _ in 0..10 {
+            offset.map(&shear, &[1e-3, 0.0]);
+        }
+        let sides: Vec<_> = offset.hull().collect();
+        assert!(sides[0].contains(0.01) && sides[1] == Interval::ZERO, "{sides:?}");
+        assert!(offset.along_axis(0) >= 1e-3 && offset.along_axis(1) == 0.0);
     }
 }

@@ -1,0 +1,47 @@
+//! How much wider sets have to be for motions that they were not found on.
+
+use std::collections::BTreeMap;
+
+use crate::data::problem::Problem;
+use crate::data::settings::NominalStart;
+use crate::program::program::{Program, dot};
+use crate::sets::UncertaintySets;
+
+/// Rows of recordings that lie beyond the reach of sets, by block, sample and state: by how much,
+/// and what each radius of X0 and U adds to the reach.
+pub(crate) type Missing = BTreeMap<(usize, usize, usize), (f64, Vec<f64>)>;
+
+impl Program<'_> {
+    /// Adds the rows of the program that lie beyond the reach of some sets.
+    pub(crate) fn missing(&self, sets: &UncertaintySets, missing: &mut Missing) {
+        let unknowns = self.unknowns(sets);
+        for index in self.indices(1) {
+            let excess = self.excess(index, &unknowns);
+            if self.is_violated(index, excess, &unknowns) {
+                let (block, k, i, _) = index;
+                let gains = || (0.0, self.row(block, k, i).1.to_vec());
+                let own = missing.entry((block, k, i)).or_insert_with(gains);
+                own.0 = own.0.max(excess);
+            }
+        }
+    }
+}
+
+/// Returns the radii that have to be added to X0 and U, 3n, so that they cover all rows that are
+/// missing; `None` if none do. Where motions differ, U differs like the input that the robot does
+/// not explain, n; X0 grows in proportion to its radii, unless the noise of the sensors limits it.
+pub(crate) fn allowance_for(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    input_error: &[f64],
+    missing: &Missing,
+) -> Option<Vec<f64>> {
+    let starts = match problem.settings().nominal {
+        NominalStart::Own => vec![0.0; sets.initial_set.dimension()],
+        NominalStart::Mean => sets.initial_set.radius.clone(),
+    };
+    let shape = [&starts[..], input_error].concat();
+    let needed = |(excess, gains): &(f64, Vec<f64>)| excess / dot(gains, &shape);
+    let factor = missing.values().map(needed).fold(0.0, f64::max);
+    factor.is_finite().then(|| shape.iter().map(|radius| factor * radius).collect())
+}

@@ -1,0 +1,137 @@
+//! Which bounds are guarantees, and for which models they are stated.
+
+use reachtube_abstraction::{Abstraction, ModelKind};
+use reachtube_conform::next_motion::TrustKind;
+use reachtube_conform::result::Code;
+use reachtube_conform::settings::{InitialLimit, NominalStart, Weights};
+use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent};
+use reachtube_recordings::{MemoryRuns, Run};
+use reachtube_robot::Robot;
+
+use crate::common::{Disturbed, Random, Recorded, conform_all, grid, read, two_joints};
+use crate::next_motion::{SUITES, check_of, recorded, settings};
+
+/// The best of several models is not one that was fixed beforehand.
+#[test]
+fn models_of_one_folder_that_the_same_motions_calibrated_are_counted() {
+    let folder = recorded([0.3, 0.4, 0.6, 0.5]);
+    let models = tempfile::tempdir().unwrap();
+    let calibrated = |viscous: f64, calibrate: &[&str]| {
+        let mut description = two_joints().description().clone();
+        description.joints[0].friction.viscous[0] += viscous;
+        let robot = Robot::from_description(&description).unwrap();
+        let problem = read(&robot, folder.path(), &[], &settings(calibrate));
+        Model::new(&problem, &conform_all(&problem))
+    };
+    let path = |name: &str| models.path().join(name);
+    let first = calibrated(0.0, &["b", "c", "d"]).among_others(&path("first.json"));
+    assert_eq!(first.trust.average_probability, Some(0.25));
+    assert_eq!(first.trust.kind, Some(TrustKind::Guarantee));
+    first.save(path("first.json")).unwrap();
+    // The same sets again are no other model, and other files are no models.
+    std::fs::write(path("other.json"), "{}").unwrap();
+    assert_eq!(first.clone().among_others(&path("again.json")), first);
+    // Some of the same recordings are enough to count.
+    let second = calibrated(0.05, &["c", "d"]).among_others(&path("second.json"));
+    assert_eq!(second.calibration.as_ref().unwrap().candidates, 2);
+    assert_eq!(second.trust.average_probability, Some(2.0 / 3.0));
+    assert!((second.trust.violation_probability - (1.0 - 0.025f64.sqrt())).abs() < 1e-9);
+    let finding = second.findings().into_iter().find(|found| found.code == Code::NextMotion);
+    let text = finding.unwrap().text;
+    assert!(text.contains("(2 in 3)") && text.contains("counts the 2 models"), "{text}");
+    second.save(path("second.json")).unwrap();
+    assert_eq!(Model::load(&path("second.json")).unwrap(), second);
+    // The first file is counted with the second one when it is read.
+    let counted = Model::load(&path("first.json")).unwrap().among_others(&path("first.json"));
+    assert_eq!(counted.trust.average_probability, Some(0.5));
+    // Three models of two motions leave nothing to state.
+    let third = calibrated(0.1, &["c", "d"]).among_others(&path("third.json"));
+    assert_eq!((third.trust.average_probability, third.trust.kind), (None, None));
+    let text = third.findings().into_iter().find(|found| found.code == Code::NoGuarantee);
+    assert!(text.unwrap().text.contains("calibrated 3 models in this folder"));
+}
+
+/// A robot that has seen the held-out motions is not one that was fixed beforehand.
+#[test]
+fn a_robot_that_was_identified_from_held_out_motions_has_no_bound() {
+    let folder = recorded([0.3, 0.4, 0.6, 0.5]);
+    let plain = read(&two_joints(), folder.path(), &[], &settings(&[]));
+    let suites = &plain.recordings().suites;
+    let robot_of = |suite: usize| {
+        let mut description = two_joints().description().clone();
+        description.add_identified_from([suites[suite].runs[2].sha256.clone()]);
+        Robot::from_description(&description).unwrap()
+    };
+    let trust = |robot: &Robot, names: &[&str], calibrate: &[&str]| {
+        conform_all(&read(robot, folder.path(), names, &settings(calibrate))).trust
+    };
+    assert_eq!(trust(&robot_of(0), &[], &["c", "d"]).average_probability, Some(1.0 / 3.0));
+    let seen = trust(&robot_of(3), &[], &["c", "d"]);
+    assert_eq!((seen.average_probability, seen.violation_probability), (None, 1.0));
+    assert!(seen.basis.contains("motions that were held out here (d)"), "{}", seen.basis);
+    // The scenario bound asks for a fixed model too.
+    assert_eq!(trust(&robot_of(3), &["a", "b"], &[]).kind, Some(TrustKind::Guarantee));
+    assert_eq!(trust(&robot_of(3), &[], &[]).kind, Some(TrustKind::Indication));
+    // In a check such recordings are not held out.
+    let fit = read(&robot_of(3), folder.path(), &["a", "b"], &settings(&[]));
+    let model = Model::new(&fit, &conform_all(&fit));
+    assert!(check_of(&folder, &model, &["c"]).trust.is_some());
+    assert!(check_of(&folder, &model, &["d"]).trust.is_none());
+}
+
+/// A window is seen if the log that it was cut from is.
+#[test]
+fn windows_of_a_log_that_identified_the_robot_have_no_bound() {
+    let (times, mut random) = (grid(0.01, 20), Random(7));
+    let mut description = two_joints().description().clone();
+    description.add_identified_from(["d".repeat(64)]);
+    let robot = Robot::from_description(&description).unwrap();
+    let arm = Disturbed { robot: &robot, times: &times, start: 0.01, input: 0.5 };
+    let mut runs = MemoryRuns::default();
+    for motion in SUITES {
+        let Recorded { times, states, torques } = arm.record(&mut random);
+        let run = Run::new(2, times, states, torques).unwrap();
+        runs.push(motion, Some(motion), Some(motion), run).origin = Some(motion.repeat(64));
+    }
+    let trust = |calibrate: &[&str]| {
+        let setup = Setup::new(robot.clone(), settings(calibrate)).unwrap();
+        let runs = Box::new(runs.clone());
+        conform_all(&Problem::read(setup, runs, &[], Keep::Needed, &Silent).unwrap()).trust
+    };
+    assert_eq!(trust(&["b", "c"]).average_probability, Some(1.0 / 3.0));
+    assert!(trust(&["c", "d"]).basis.contains("motions that were held out here (d)"));
+}
+
+/// The scenario bound is a guarantee only where its theorem's conditions are met.
+#[test]
+fn a_bound_whose_conditions_are_not_met_is_an_indication() {
+    let folder = recorded([0.3; 4]);
+    let nonlinear = Abstraction { model: ModelKind::Two, order: 3 };
+    let plain = || settings(&[]);
+    let own = || Settings { nominal: NominalStart::Own, ..plain() };
+    let given = Settings { sensor_noise: Some(vec![0.05; 4]), ..own() };
+    for (settings, kind, words) in [
+        (plain(), TrustKind::Guarantee, "scenario bound"),
+        (given, TrustKind::Guarantee, "scenario bound"),
+        (own(), TrustKind::Indication, "was estimated from the recordings"),
+        (Settings { abstraction: nonlinear, ..plain() }, TrustKind::Indication, "is not linear"),
+        (Settings { weights: Weights::Spread, ..plain() }, TrustKind::Indication, "fixed cost"),
+        (
+            Settings { initial_limit: InitialLimit::States, ..plain() },
+            TrustKind::Indication,
+            "the limit of X0",
+        ),
+    ] {
+        let problem = read(&two_joints(), folder.path(), &[], &settings);
+        let model = Model::new(&problem, &conform_all(&problem));
+        assert_eq!(model.trust.kind, Some(kind), "{:?}", model.trust);
+        assert!(model.trust.basis.contains(words), "{}", model.trust.basis);
+        // Four motions that all decide have no bound; a bound of an indication says what it is.
+        let mut model = model;
+        model.trust.violation_probability = 0.5;
+        let text = model.findings();
+        let text = text.iter().find(|found| found.code == Code::NextMotion).unwrap().text.clone();
+        let is_indication = text.starts_with("An indication and no guarantee: the next motion");
+        assert_eq!(is_indication, kind == TrustKind::Indication, "{text}");
+    }
+}
