@@ -52,8 +52,9 @@ fn taken() -> bool {
 pub struct GroupCost {
     /// The group.
     pub group: Group,
-    /// Cost of the sets with this group at its identified values and the others fitted again;
-    /// `None` if a nominal motion runs away.
+    /// Cost of the sets with this group at its identified values and the others fitted again by a
+    /// quick search, which may end somewhat above their optimum; `None` if a nominal motion runs
+    /// away.
     pub cost_without: Option<f64>,
 }
 

@@ -123,16 +123,10 @@ pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<LeftOut> {
     let without = Without { problem, suites };
     let limits = problem.with_suites(|suite| !without.suites[suite]).limits();
     let program = Program::of_problem(problem)?.with_limits(limits);
-    let own = without.own(&program)?;
-    let unknown = LeftOut {
-        motion: motion.into(),
-        cost: None,
-        rows: own.iter().map(|own| own.rows() / 2).sum(),
-        outside: None,
-        gauge: None,
-    };
-    let others = without.rows(&program, |suite| !without.suites[suite])?;
-    without.compare(&others, &[], &own, unknown)
+    let (own, others) = (without.own(&program)?, without.others(&program)?);
+    let (rows, [cost, gauge]) = (without.row_count()?, [None; 2]);
+    let unknown = LeftOut { motion: motion.into(), cost, rows, outside: None, gauge };
+    Ok(without.compare(&others, &[], &own, unknown)?.0)
 }
 
 impl Without<'_> {
