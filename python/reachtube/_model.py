@@ -126,7 +126,8 @@ class Model(Record):
 
     @property
     def trust(self) -> dict[str, Any]:
-        """The bound for the next motion, its confidence, and its assumptions (``basis``)."""
+        """The bound for the next motion: its confidence, its assumptions (``basis``), and whether
+        it is a guarantee or an indication (``kind``)."""
         return dict(self._content["trust"])
 
     @property

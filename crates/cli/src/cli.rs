@@ -6,7 +6,7 @@ use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
     r#abstract, campaign, check, completions, conform, convert, demo, excite, export, identify,
-    inspect, man, model, prepare, reach, report,
+    inspect, man, model, prepare, reach, report, stop, verify,
 };
 use crate::error::Result;
 use crate::global::GlobalOptions;
@@ -52,10 +52,15 @@ Examples:
       check other recordings against the model
   reachtube report --model model.json --data recordings --out report
       write an HTML page with figures
+  reachtube verify cell.toml --out cell
+      decide whether the links stay clear of obstacles
+  reachtube stop --model model.json --data recordings --brakes brakes.toml
+      enclose how far the robot moves after a stop
   reachtube reproduce table1
       repeat the paper's simulations
 
-Exit codes: 0 conformant (or done), 1 not conformant, 2 error, 3 conformant but vacuous.
+Exit codes: 0 conformant, safe or done, 1 not conformant or unsafe, 2 error, 3 conformant but
+vacuous, or undecided.
 Results go to standard output; notes, warnings and errors go to standard error.";
 
 #[derive(Debug, Subcommand)]
@@ -70,6 +75,8 @@ pub(crate) enum Command {
     Conform(conform::Arguments),
     Abstract(r#abstract::Arguments),
     Reach(reach::Arguments),
+    Verify(verify::Arguments),
+    Stop(stop::Arguments),
     Excite(excite::Arguments),
     Convert(convert::Arguments),
     Demo(demo::Arguments),
@@ -96,6 +103,8 @@ pub(crate) fn run(cli: &Cli) -> Result<Outcome> {
         Command::Conform(args) => conform::run(args, json),
         Command::Abstract(args) => r#abstract::run(args, json),
         Command::Reach(args) => reach::run(args, json),
+        Command::Verify(args) => verify::run(args, json),
+        Command::Stop(args) => stop::run(args, json),
         Command::Excite(args) => excite::run(args, json),
         Command::Convert(args) => convert::run(args, json),
         Command::Demo(args) => demo::run(args, json),

@@ -185,6 +185,9 @@ pub(crate) enum Error {
         "only mjcf and urdf take --robot; name a model that `conform --out` wrote with --model"
     )]
     NoModel,
+    /// `export --update` for a file that is no URDF.
+    #[error("--update is for --to urdf only; leave it out, or export to urdf")]
+    NothingToUpdate,
     /// `export` has no recorded input.
     #[error(
         "an export to {tool} needs the recorded input; name the recordings with --data and the \
@@ -200,6 +203,9 @@ pub(crate) enum Error {
     /// A model or robot could not be exported.
     #[error(transparent)]
     Export(ExportError),
+    /// The question of `verify` has no answer.
+    #[error(transparent)]
+    Verify(reachtube::verify::Error),
     /// No model could be made of logs.
     #[error(transparent)]
     Pipeline(Box<PipelineError>),
@@ -221,9 +227,19 @@ impl Error {
             },
             Self::Log(error) => log_kind(error),
             Self::Export(_) => "export",
+            Self::Verify(error) => verify_kind(error),
             Self::Library(error) => kind(error),
             _ => "setting",
         }
+    }
+}
+
+/// Returns what an error of `verify` is about.
+fn verify_kind(error: &reachtube::verify::Error) -> &'static str {
+    use reachtube::verify::Error as E;
+    match error {
+        E::Mesh { .. } | E::NoCapsules { .. } => "robot",
+        _ => "setting",
     }
 }
 
@@ -286,6 +302,18 @@ impl From<ExportError> for Error {
         match error {
             ExportError::Conform(error) => error.into(),
             error => Self::Export(error),
+        }
+    }
+}
+
+impl From<reachtube::verify::Error> for Error {
+    fn from(error: reachtube::verify::Error) -> Self {
+        use reachtube::verify::Error as E;
+        match error {
+            E::File(error) => error.into(),
+            E::Robot(error) => error.into(),
+            E::Conform(error) => error.into(),
+            error => Self::Verify(error),
         }
     }
 }

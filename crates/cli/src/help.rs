@@ -24,6 +24,7 @@ const GROUPS: &[(&str, &[&str])] = &[
         "The steps of `model`, one by one",
         &["identify", "prepare", "conform", "abstract", "reach", "excite", "convert"],
     ),
+    ("From a model to safety", &["verify", "stop"]),
     ("The paper", &["demo", "campaign", "reproduce"]),
     ("The rest", &["robot", "completions", "man"]),
 ];

@@ -27,14 +27,14 @@ use std::process::ExitCode;
 
 use crate::outcome::Outcome;
 
-/// Exit code of a result that is not conformant.
+/// Exit code of a result that is not conformant, or not safe.
 const NOT_CONFORMANT: u8 = 1;
 
 /// Exit code of an error.
 const ERROR: u8 = 2;
 
-/// Exit code of a model that is conformant and vacuous.
-const VACUOUS: u8 = 3;
+/// Exit code of a model that is conformant and vacuous, and of a question that is undecided.
+const LEFT_OPEN: u8 = 3;
 
 fn main() -> ExitCode {
     let json = std::env::args().any(|argument| argument == "--json");
@@ -44,8 +44,8 @@ fn main() -> ExitCode {
     });
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::NotConformant) => ExitCode::from(NOT_CONFORMANT),
-        Ok(Outcome::Vacuous) => ExitCode::from(VACUOUS),
+        Ok(Outcome::NotConformant | Outcome::Unsafe) => ExitCode::from(NOT_CONFORMANT),
+        Ok(Outcome::Vacuous | Outcome::Undecided) => ExitCode::from(LEFT_OPEN),
         Err(error::Error::Usage(message)) if !json || !message.use_stderr() => message.exit(),
         Err(error) if json => {
             output::json_error(&error.to_string(), error.kind(), ERROR);

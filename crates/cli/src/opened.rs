@@ -22,6 +22,11 @@ pub(crate) struct OpenedCheck {
 }
 
 impl OpenedCheck {
+    /// Returns the reachable sets.
+    pub(crate) fn tube(&self) -> &Tube {
+        &self.tube
+    }
+
     /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
     /// judged by `notion`, or by the notion in the file.
     pub(crate) fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {

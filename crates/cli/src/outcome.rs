@@ -10,6 +10,10 @@ pub(crate) enum Outcome {
     NotConformant,
     /// The verdict is conformant, but the sets do not limit some joint.
     Vacuous,
+    /// A link comes too close to an obstacle.
+    Unsafe,
+    /// It is not known whether the links stay clear.
+    Undecided,
 }
 
 impl Outcome {

@@ -26,8 +26,8 @@ pub(crate) fn print(text: &str) -> Result<()> {
 pub(crate) fn print_verdict(text: &str, outcome: &Outcome) -> Result<()> {
     let colour = match outcome {
         Outcome::Done => AnsiColor::Green,
-        Outcome::NotConformant => AnsiColor::Red,
-        Outcome::Vacuous => AnsiColor::Yellow,
+        Outcome::NotConformant | Outcome::Unsafe => AnsiColor::Red,
+        Outcome::Vacuous | Outcome::Undecided => AnsiColor::Yellow,
     };
     let text = printable(text);
     let (verdict, rest) = text.split_at(text.find([':', '\n']).unwrap_or(0));

@@ -53,6 +53,13 @@ pub(super) fn heat(runs: &[RunTrace]) -> Heat {
     }
 }
 
+/// Places runs by the temperature of one joint, from 0; `None` where a run has none.
+pub(super) fn heat_of_joint(runs: &[RunTrace], joint: usize) -> Option<Vec<f64>> {
+    let degrees: Option<Vec<f64>> =
+        runs.iter().map(|run| run.temperatures.get(joint).copied()).collect();
+    degrees.filter(|degrees| !degrees.is_empty()).map(|degrees| relative(&degrees).0)
+}
+
 /// Scales values to 0..=1, and returns their smallest and largest too.
 fn relative(values: &[f64]) -> (Vec<f64>, [f64; 2]) {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -81,6 +88,15 @@ mod tests {
         let mut colours: Vec<String> = (0..100).map(|k| hex(colour(f64::from(k) / 99.0))).collect();
         colours.dedup();
         assert_eq!(colours.len(), 100);
+    }
+
+    #[test]
+    fn each_joint_has_a_range_of_its_own() {
+        let warm = |degrees: [f64; 2]| RunTrace { temperatures: degrees.into(), ..run(1, None) };
+        let runs = [warm([20.0, 31.0]), warm([25.0, 30.0]), warm([30.0, 30.5])];
+        assert_eq!(heat_of_joint(&runs, 0), Some(vec![0.0, 0.5, 1.0]));
+        assert_eq!(heat_of_joint(&runs, 1), Some(vec![1.0, 0.0, 0.5]));
+        assert_eq!(heat_of_joint(&[runs[0].clone(), run(2, None)], 0), None);
     }
 
     #[test]

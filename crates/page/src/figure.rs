@@ -51,8 +51,18 @@ pub fn suite_svg(figure: &SuiteFigure, view: View) -> Result<String, Error> {
     if !figure.views().contains(&view) {
         return Err(Error::View { suite: figure.suite.clone(), view });
     }
-    let heat = colour::heat(&figure.runs);
-    let colours: Vec<RGBColor> = heat.values.iter().map(|&heat| colour::colour(heat)).collect();
+    let mut heat = colour::heat(&figure.runs);
+    let joints = 0..figure.joints.len();
+    let own: Option<Vec<Vec<f64>>> =
+        joints.map(|joint| colour::heat_of_joint(&figure.runs, joint)).collect();
+    if own.is_some() {
+        heat.ends = ["coldest of each joint".into(), "hottest".into()];
+    }
+    let colours = |values: &Vec<f64>| -> Vec<RGBColor> {
+        values.iter().map(|&heat| colour::colour(heat)).collect()
+    };
+    let colours: Vec<Vec<RGBColor>> =
+        own.unwrap_or_else(|| vec![heat.values.clone()]).iter().map(colours).collect();
     // The width decides the rows of the legend, and these the height.
     let layout = Layout::new(figure.joints.len());
     let legend = Legend::new(figure, view, &heat, layout.width());
@@ -73,9 +83,11 @@ fn panels(
     figure: &SuiteFigure,
     view: View,
     layout: &Layout,
-    colours: &[RGBColor],
+    colours: &[Vec<RGBColor>],
 ) -> DrawResult {
-    for state in 0..2 * figure.joints.len() {
+    let n = figure.joints.len();
+    for state in 0..2 * n {
+        let colours = &colours[state % n % colours.len()];
         let content = Content::new(figure, view, state).thinned(layout.plot());
         panel::draw(canvas, layout, state, &content, colours)?;
         labels(canvas, figure, layout, state)?;

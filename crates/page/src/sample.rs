@@ -25,6 +25,7 @@ pub(super) fn suite(name: &str, joints: usize) -> SuiteFigure {
             name: format!("run {order}"),
             order,
             temperature: None,
+            temperatures: Vec::new(),
             gauge: Some(0.3 * order as f64),
             times: times.clone(),
             states: nominal.iter().map(|row| row.iter().zip(&times).map(shift).collect()).collect(),

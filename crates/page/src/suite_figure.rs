@@ -70,6 +70,9 @@ pub struct RunTrace {
     pub order: usize,
     /// Temperature \[°C\]; it colours the lines where every run has one.
     pub temperature: Option<f64>,
+    /// Mean temperature of each joint over the run \[°C\], n; empty where none were recorded. Where
+    /// every run has them, they colour the lines of each joint over its own range.
+    pub temperatures: Vec<f64>,
     /// Sample times \[s\], strictly increasing.
     pub times: Vec<f64>,
     /// Samples, shape `[2n][times]`.

@@ -252,11 +252,22 @@ fn trace(
         name: entry.file.clone(),
         order,
         temperature: entry.temperature,
+        temperatures: means(&run.temperatures, run.joints),
         times: run.times.clone(),
         states: columns(&states, 2 * run.joints),
         gauge: None,
         touches: 0,
     })
+}
+
+/// Returns the mean of each of `count` columns of row-major values; an empty list for no rows.
+fn means(values: &[f64], count: usize) -> Vec<f64> {
+    let rows = values.len() / count;
+    if rows == 0 {
+        return Vec::new();
+    }
+    let mean = |i: usize| values.iter().skip(i).step_by(count).sum::<f64>() / rows as f64;
+    (0..count).map(mean).collect()
 }
 
 /// Turns row-major samples x states into one list per state.

@@ -25,3 +25,4 @@ pub use reachtube_reach::{
 pub use reachtube_recordings::{self as recordings, DataSet, MemoryRuns, Run, RunSource, Torque};
 pub use reachtube_robot::{self as robot, Robot, units};
 pub use reachtube_scalar::{self as scalar, number};
+pub use reachtube_verify as verify;

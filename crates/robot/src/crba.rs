@@ -5,9 +5,27 @@ use crate::joint_kind::JointKind;
 use crate::link::Link;
 use crate::pose::Pose;
 use crate::robot::Robot;
-use crate::workspace::Workspace;
+use crate::workspace::{LinkScratch, Workspace};
 use nalgebra::DMatrix;
-use reachtube_scalar::Scalar;
+use reachtube_scalar::{Kernel, Scalar};
+
+/// The arguments of [`Robot::crba`].
+struct CompositeBodies<'a, S> {
+    robot: &'a Robot,
+    sin: &'a [S],
+    cos: &'a [S],
+    scratch: &'a mut [LinkScratch<S>],
+    m: &'a mut [S],
+}
+
+impl<S: Scalar> Kernel for CompositeBodies<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.robot.composite_bodies(self.sin, self.cos, self.scratch, self.m);
+    }
+}
 
 impl Robot {
     /// Computes the mass matrix M_m(q) = M(q) + diag(armature) of (3) \[kg m²\], n x n, row by row,
@@ -26,23 +44,36 @@ impl Robot {
     ///
     /// Panics if a slice or the workspace is too short for the robot.
     pub fn crba<S: Scalar>(&self, sin: &[S], cos: &[S], ws: &mut Workspace<S>, m: &mut [S]) {
+        S::dispatch(CompositeBodies { robot: self, sin, cos, scratch: &mut ws.links, m });
+    }
+
+    /// Computes the mass matrix like [`crba`](Self::crba), within a kernel.
+    #[inline(always)]
+    pub(crate) fn composite_bodies<S: Scalar>(
+        &self,
+        sin: &[S],
+        cos: &[S],
+        scratch: &mut [LinkScratch<S>],
+        m: &mut [S],
+    ) {
         if self.slides {
-            self.crba_among::<S, true>(sin, cos, ws, m);
+            self.crba_among::<S, true>(sin, cos, scratch, m);
         } else {
-            self.crba_among::<S, false>(sin, cos, ws, m);
+            self.crba_among::<S, false>(sin, cos, scratch, m);
         }
     }
 
     /// Computes the mass matrix of a robot that has prismatic joints only if `SLIDES`.
+    #[inline(always)]
     fn crba_among<S: Scalar, const SLIDES: bool>(
         &self,
         sin: &[S],
         cos: &[S],
-        ws: &mut Workspace<S>,
+        scratch: &mut [LinkScratch<S>],
         m: &mut [S],
     ) {
         let n = self.links.len();
-        let (m, sin, cos, scratch) = (&mut m[..n * n], &sin[..n], &cos[..n], &mut ws.links[..n]);
+        let (m, sin, cos, scratch) = (&mut m[..n * n], &sin[..n], &cos[..n], &mut scratch[..n]);
         for i in 0..n {
             scratch[i].pose = self.links[i].pose_among::<S, SLIDES>(&sin[i], &cos[i]);
         }

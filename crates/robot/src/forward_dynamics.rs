@@ -5,7 +5,31 @@ use crate::ltdl;
 use crate::robot::Robot;
 use crate::workspace::Workspace;
 use nalgebra::DVector;
-use reachtube_scalar::Scalar;
+use reachtube_scalar::{Kernel, Scalar};
+
+/// The arguments of [`Robot::forward_dynamics_under`].
+struct ForwardDynamics<'a, S> {
+    robot: &'a Robot,
+    gravity: GravityLoad<S>,
+    state: [&'a [S]; 4],
+    ws: &'a mut Workspace<S>,
+    qdd: &'a mut [S],
+}
+
+impl<S: Scalar> Kernel for ForwardDynamics<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { robot, gravity, state: [sin, cos, qd, tau], ws, qdd } = self;
+        let (n, still) = (robot.links.len(), &ws.zero_acceleration);
+        robot.composite_bodies(sin, cos, &mut ws.links, &mut ws.mass_matrix);
+        robot.newton_euler_passes([sin, cos, qd, still], gravity, &mut ws.links, qdd);
+        ltdl::factor(&mut ws.mass_matrix, n);
+        qdd.iter_mut().zip(tau).for_each(|(x, t)| *x = t.clone() - x.clone());
+        ltdl::solve(&ws.mass_matrix, &mut qdd[..n]);
+    }
+}
 
 impl Robot {
     /// Computes forward dynamics (4): q̈ = M_m(q)⁻¹ (tau - c(q, q̇) - g(q)) \[rad/s²\] by
@@ -38,14 +62,7 @@ impl Robot {
         ws: &mut Workspace<S>,
         qdd: &mut [S],
     ) {
-        let n = self.links.len();
-        let mut mass_matrix = core::mem::take(&mut ws.mass_matrix);
-        self.crba(sin, cos, ws, &mut mass_matrix);
-        self.newton_euler([sin, cos, qd, &ws.zero_acceleration], gravity, &mut ws.links, qdd);
-        ltdl::factor(&mut mass_matrix, n);
-        qdd.iter_mut().zip(tau).for_each(|(x, t)| *x = t.clone() - x.clone());
-        ltdl::solve(&mass_matrix, &mut qdd[..n]);
-        ws.mass_matrix = mass_matrix;
+        S::dispatch(ForwardDynamics { robot: self, gravity, state: [sin, cos, qd, tau], ws, qdd });
     }
 
     /// Returns q̈ of (4) \[rad/s²\] at q \[rad\], q̇ \[rad/s\] and link-side torque \[N m\].

@@ -5,7 +5,7 @@ use crate::link::Link;
 use crate::robot::Robot;
 use crate::workspace::{LinkScratch, Workspace, accumulate_to_parents};
 use nalgebra::DVector;
-use reachtube_scalar::Scalar;
+use reachtube_scalar::{Kernel, Scalar};
 
 /// The parameters that gravity acts on, with the base acceleration that has the same effect.
 pub(crate) enum GravityLoad<S> {
@@ -20,11 +20,35 @@ pub(crate) enum GravityLoad<S> {
 impl<S: Scalar> GravityLoad<S> {
     /// Returns the base acceleration for the inertial parameters, and the one for the separate
     /// gravity parameters if there are any.
+    #[inline(always)]
     pub(crate) fn split(self) -> (Vec3<S>, Option<Vec3<S>>) {
         match self {
             Self::None => (Vec3::zero(), None),
             Self::Inertial(acceleration) => (acceleration, None),
             Self::Separate(acceleration) => (Vec3::zero(), Some(acceleration)),
+        }
+    }
+}
+
+/// The arguments of [`Robot::gravity_pass`].
+struct GravityPass<'a, S> {
+    robot: &'a Robot,
+    sin: &'a [S],
+    cos: &'a [S],
+    scratch: &'a mut [LinkScratch<S>],
+    g: &'a mut [S],
+}
+
+impl<S: Scalar> Kernel for GravityPass<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { robot, sin, cos, scratch, g } = self;
+        if robot.slides {
+            robot.gravity_pass_among::<S, true>(sin, cos, scratch, g);
+        } else {
+            robot.gravity_pass_among::<S, false>(sin, cos, scratch, g);
         }
     }
 }
@@ -57,14 +81,11 @@ impl Robot {
         scratch: &mut [LinkScratch<S>],
         g: &mut [S],
     ) {
-        if self.slides {
-            self.gravity_pass_among::<S, true>(sin, cos, scratch, g);
-        } else {
-            self.gravity_pass_among::<S, false>(sin, cos, scratch, g);
-        }
+        S::dispatch(GravityPass { robot: self, sin, cos, scratch, g });
     }
 
     /// Runs the pass for a robot that has prismatic joints only if `SLIDES`.
+    #[inline(always)]
     fn gravity_pass_among<S: Scalar, const SLIDES: bool>(
         &self,
         sin: &[S],
@@ -86,6 +107,7 @@ impl Robot {
     }
 
     /// Returns the gravity load of this robot.
+    #[inline(always)]
     pub(crate) fn gravity_load<S: Scalar>(&self) -> GravityLoad<S> {
         let acceleration = self.base_acceleration();
         if self.separate_gravity {
@@ -97,6 +119,7 @@ impl Robot {
 
     /// Returns the base acceleration that acts on every mass as gravity does, in the working base
     /// frame \[m/s²\].
+    #[inline(always)]
     fn base_acceleration<S: Scalar>(&self) -> Vec3<S> {
         Vec3::constant(self.working_gravity.map(|g| -g))
     }

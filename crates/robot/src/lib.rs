@@ -67,5 +67,6 @@ pub use polynomial_dynamics::PolynomialDynamics;
 pub use regressor::Regressor;
 pub use robot::Robot;
 pub use simulate::Trajectory;
+pub use urdf::collision::{CollisionShape, Shape};
 pub use urdf::read::{Urdf, UrdfOptions};
 pub use workspace::Workspace;

@@ -27,6 +27,7 @@ use reachtube_scalar::Scalar;
 /// reachtube_robot::ltdl::solve(&m, &mut x);
 /// assert_eq!(x, [1.0, 1.0]);
 /// ```
+#[inline(always)]
 pub fn factor<S: Scalar>(m: &mut [S], n: usize) {
     let m = &mut m[..n * n];
     for k in (1..n).rev() {
@@ -49,6 +50,7 @@ pub fn factor<S: Scalar>(m: &mut [S], n: usize) {
 /// # Guarantee
 ///
 /// Over `Interval`: an outer enclosure of the solutions.
+#[inline(always)]
 pub fn solve<S: Scalar>(factors: &[S], x: &mut [S]) {
     let n = x.len();
     let factors = &factors[..n * n];

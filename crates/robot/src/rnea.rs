@@ -6,7 +6,25 @@ use crate::motion::{Motion, link_wrench};
 use crate::robot::Robot;
 use crate::workspace::{LinkScratch, Workspace, accumulate_to_parents};
 use nalgebra::DVector;
-use reachtube_scalar::Scalar;
+use reachtube_scalar::{Kernel, Scalar};
+
+/// The arguments of [`Robot::newton_euler`].
+struct NewtonEuler<'a, S> {
+    robot: &'a Robot,
+    motion: [&'a [S]; 4],
+    gravity: GravityLoad<S>,
+    scratch: &'a mut [LinkScratch<S>],
+    tau: &'a mut [S],
+}
+
+impl<S: Scalar> Kernel for NewtonEuler<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.robot.newton_euler_passes(self.motion, self.gravity, self.scratch, self.tau);
+    }
+}
 
 impl Robot {
     /// Computes inverse dynamics (3): the link-side torque of a motion \[N m\], armature and
@@ -41,6 +59,18 @@ impl Robot {
 
     /// Runs Newton-Euler for the motion [sin q, cos q, q̇, q̈] under a gravity load.
     pub(crate) fn newton_euler<S: Scalar>(
+        &self,
+        motion: [&[S]; 4],
+        gravity: GravityLoad<S>,
+        scratch: &mut [LinkScratch<S>],
+        tau: &mut [S],
+    ) {
+        S::dispatch(NewtonEuler { robot: self, motion, gravity, scratch, tau });
+    }
+
+    /// Runs the passes of [`newton_euler`](Self::newton_euler) within a kernel.
+    #[inline(always)]
+    pub(crate) fn newton_euler_passes<S: Scalar>(
         &self,
         motion: [&[S]; 4],
         gravity: GravityLoad<S>,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use divan::{Bencher, black_box, counter::ItemsCount};
-use reachtube_scalar::{Interval, Scalar, TaylorPolynomial, TaylorSpace};
+use reachtube_scalar::{Interval, Lanes, Lanewise, Scalar, TaylorPolynomial, TaylorSpace};
 
 fn main() {
     divan::main();
@@ -25,12 +25,14 @@ fn dense<C: Scalar>(space: &Arc<TaylorSpace>, offset: f64) -> TaylorPolynomial<C
     sum.recip()
 }
 
-#[divan::bench(args = SPACES)]
-fn product(bencher: Bencher, (variables, order): (usize, u32)) {
+/// Measures one product, and as many as there are lanes at once; the items are coefficient products
+/// of all of them.
+#[divan::bench(types = [f64, Lanes<8>], args = SPACES)]
+fn product<S: Lanewise>(bencher: Bencher, (variables, order): (usize, u32)) {
     let space = TaylorSpace::new(variables, order).unwrap();
-    let (a, b) = (dense::<f64>(&space, 0.0), dense::<f64>(&space, 0.5));
-    let count = ItemsCount::new(coefficient_products(variables, order));
-    bencher.counter(count).bench(|| black_box(&a) * black_box(&b));
+    let (a, b) = (dense::<S>(&space, 0.0), dense::<S>(&space, 0.5));
+    let count = ItemsCount::new(S::LANES * coefficient_products(variables, order));
+    bencher.counter(count).bench_local(|| black_box(&a) * black_box(&b));
 }
 
 #[divan::bench(args = SPACES)]

@@ -4,6 +4,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 
 use num_traits::{One, Zero};
 
+use crate::dispatch::{Dispatch, Kernel, vectorised};
 use crate::elementary::Elementary;
 use crate::powers::Powers;
 
@@ -125,6 +126,14 @@ impl<const N: usize> Elementary for Lanes<N> {
 
 impl<const N: usize> Powers for Lanes<N> {}
 
+/// On x86-64, kernels over lanes take AVX2 where the processor has it.
+impl<const N: usize> Dispatch for Lanes<N> {
+    #[inline(always)]
+    fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+        vectorised(kernel)
+    }
+}
+
 impl<const N: usize> Lanes<N> {
     /// Returns a scalar whose lane i is `lanes[i]`.
     #[inline(always)]
@@ -152,8 +161,9 @@ impl<const N: usize> From<f64> for Lanes<N> {
 impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
     #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0.map(|x| -x))
+    fn neg(mut self) -> Self {
+        self.0.iter_mut().for_each(|x| *x = -*x);
+        self
     }
 }
 
@@ -170,8 +180,8 @@ macro_rules! lane_by_lane {
         impl<const N: usize> $OpAssign for Lanes<N> {
             #[inline(always)]
             fn $op_assign(&mut self, rhs: Self) {
-                for (x, y) in self.0.iter_mut().zip(rhs.0) {
-                    x.$op_assign(y);
+                for (x, y) in self.0.iter_mut().zip(&rhs.0) {
+                    x.$op_assign(*y);
                 }
             }
         }
@@ -191,6 +201,7 @@ impl<const N: usize> Zero for Lanes<N> {
     }
 
     /// Returns whether every lane is 0.
+    #[inline(always)]
     fn is_zero(&self) -> bool {
         self.0.iter().all(|x| *x == 0.0)
     }

@@ -1,6 +1,7 @@
 //! Number types for reachability analysis of robots, from intervals to Taylor models.
 #![doc = include_str!("../README.md")]
 
+mod dispatch;
 mod elementary;
 mod exact_sum;
 mod interval;
@@ -12,6 +13,7 @@ mod scalar;
 mod taylor;
 mod taylor_model;
 
+pub use dispatch::{Dispatch, Kernel};
 pub use elementary::Elementary;
 pub use exact_sum::ExactSum;
 pub use interval::{DecimalError, Interval};

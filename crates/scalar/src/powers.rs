@@ -4,6 +4,7 @@ use crate::scalar::Scalar;
 /// A number whose powers are computed one after the other.
 pub trait Powers: Scalar {
     /// Returns self^e for e ≥ 1; `previous` is self^(e-1) where e > 1.
+    #[inline(always)]
     fn power(&self, e: u32, previous: Option<&Self>) -> Self {
         match previous {
             Some(previous) if e > 1 => previous.clone() * self.clone(),

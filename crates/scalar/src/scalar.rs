@@ -2,6 +2,8 @@ use core::fmt::Debug;
 use core::ops::{AddAssign, Div, DivAssign, MulAssign, Neg, SubAssign};
 use num_traits::{One, Zero};
 
+use crate::dispatch::Dispatch;
+
 /// A number type over which the dynamics of a robot can be evaluated.
 ///
 /// `f64`, [`Interval`](crate::Interval), SIMD [`Lanes`](crate::Lanes),
@@ -36,6 +38,7 @@ pub trait Scalar:
     + MulAssign
     + DivAssign
     + From<f64>
+    + Dispatch
     + 'static
 {
 }
@@ -54,6 +57,7 @@ impl<S> Scalar for S where
         + MulAssign
         + DivAssign
         + From<f64>
+        + Dispatch
         + 'static
 {
 }

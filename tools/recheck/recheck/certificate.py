@@ -53,7 +53,7 @@ class Certificate:
                     key = point["suite"], point["sample"]
                     self.lines.setdefault(key, []).append(at)
                     at += len(line)
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
             raise BadInput(f"{path}: {error!r}; give a file of `conform --certificate`") from error
 
     def _header(self, header):
@@ -149,7 +149,7 @@ class Certificate:
             recipe = Recipe(y, float(point.get("limit", self.limit)), held)
             if not (0.0 < recipe.limit <= 1.0 and isinstance(held, int) and held >= 1):
                 raise ValueError("limit or held is out of range")
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise BadInput(f"{self.path}: a point at sample {sample.k}: {error!r}") from error
         if (suite, file) in runs and states in self.projections and len(y) == len(states):
             c, run = runs[suite, file]

@@ -67,7 +67,7 @@ def read_model(path, any_run=False):
         with open(path, encoding="utf-8") as file:
             text = file.read()
         content = json.loads(text, parse_constant=_refuse_constant)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise BadInput(f"{path}: {error}; give a file that `conform --out` wrote") from error
     try:
         model = _model(content, text)

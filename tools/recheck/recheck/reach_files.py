@@ -102,7 +102,7 @@ def check_record(model, folder, cases):
                   for suite in suites for run in suite.get("runs", [])}
         counted = {suite["name"] for suite in suites if "run_count" in suite}
         is_own = record["model_sha256"] == model.digest
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise BadInput(
             f"{path}: {error!r}; run `reachtube reach` again, which writes this record"
         ) from error

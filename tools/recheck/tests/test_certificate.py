@@ -12,7 +12,9 @@ import pytest
 import toy
 
 from recheck.balls import arb, arb_mat
+from recheck.certificate import Certificate
 from recheck.cli import main
+from recheck.errors import BadInput
 from recheck.generators import Columns, Generators
 from recheck.grid import Grid
 from recheck.membership import Projection, Recipe
@@ -230,3 +232,28 @@ def test_steps_that_share_their_factors_have_the_sum_of_their_generators():
                            ages=lambda: numpy.arange(5)[::-1, None])
     found = Projection(made, None, [0])._factors([Recipe([0.01], 0.25, 3)], 3)
     assert found[:, 0] == pytest.approx([0.005, 0.03, 0.03, 0.25, 0.25, 0.25])
+
+
+HEADER = {"format": "reachtube-certificate", "version": 1, "notion": "exact", "model_sha256": "ab"}
+
+
+@pytest.mark.parametrize("line", [
+    "[" * 100_000, '{"suite": "A"}', '{"suite": "A", "sample": []}', "null", "\udcff", "1e",
+])
+def test_a_line_that_is_no_point_is_refused(tmp_path, line):
+    model = SimpleNamespace(joints=1, states=2, settings={"disturbance": "sample"}, sha256="ab")
+    path = tmp_path / "points.jsonl"
+    path.write_bytes(f"{json.dumps(HEADER)}\n{line}\n".encode(errors="surrogateescape"))
+    with pytest.raises(BadInput):
+        Certificate(model, None, path, 1, [])
+
+
+def test_a_number_beyond_all_doubles_is_refused(tmp_path):
+    model = SimpleNamespace(joints=1, states=2, settings={"disturbance": "sample"}, sha256="ab")
+    path = tmp_path / "points.jsonl"
+    path.write_text(json.dumps(HEADER) + "\n")
+    made = Certificate(model, None, path, 1, [])
+    point = {"suite": "A", "run": "A_1.csv", "sample": 1, "states": [0, 1], "limit": 0.9,
+             "y": [10**400, 0]}
+    with pytest.raises(BadInput):
+        made._take(SimpleNamespace(k=1), point, {}, {})

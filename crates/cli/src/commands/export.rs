@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::conform::{Keep, Model};
-use reachtube::export::robot::{mjcf_files, urdf_files};
+use reachtube::export::robot::{mjcf_files, updated_urdf_files, urdf_files};
 use reachtube::export::{ExportCase, ExportError, ExportFile, InputForm, Meaning, Tool, files};
 use reachtube::{Robot, write};
 use serde::Deserialize;
@@ -23,19 +23,20 @@ use crate::table::table;
 const HELP: &str = "\
 Tools, what they can mean, and what they cannot:
   cora        every model; the recorded input at equally spaced samples, U changing at any time
-  flowstar    every model; U counts as a fresh value in each place, which widens the set
+  flowstar    affine models as a model file, others as a C++ program that steps through samples
   spaceex     affine models; a polynomial one as a carrier for programs that read the format
   xspeed      affine models without a recorded input
   hylaa       affine models without a recorded input, at equally spaced samples; U held over each
-  juliareach  affine models without a recorded input; of polynomial ones only constant inputs
-  mjcf, urdf  the robot; of its friction a viscous and a Coulomb coefficient. urdf has no
-              motor inertia, and one set of masses for weight and inertia
+  juliareach  affine models without a recorded input
+  mjcf, urdf  the robot; of its friction a viscous and a Coulomb coefficient, and for MuJoCo 4 a
+              cubic one. urdf has no motor inertia; --update changes a URDF that is there
 Unsupported models are refused. The first lines of each file state what the tool computes.
 
 Examples:
   reachtube export --model model.json --to cora --data recordings --suites A --out cora
   reachtube export --model model.json --to hylaa --data recordings --suites A --out hylaa
   reachtube export --robot arm.toml --to mjcf --out robot
+  reachtube export --robot identified.toml --to urdf --update arm.urdf --out robot
 
 Each suite, or run with a nominal motion of its own, gets a folder, which also holds our bounds
 (bounds.csv at samples, tube.csv between them) and the input (inputs.csv). docs/export.md says how
@@ -44,7 +45,7 @@ each tool runs its file.";
 const TARGETS: Choices = &[
     ("cora", "CORA 2024 or later, MATLAB files"),
     ("spaceex", "SpaceEx, XML and configuration"),
-    ("flowstar", "Flow* 2.1, a model file"),
+    ("flowstar", "Flow*, a model file for 2.1 or a C++ program for its library"),
     ("hylaa", "HyLAA 2, a Python script"),
     ("xspeed", "XSpeed, XML and configuration"),
     ("juliareach", "ReachabilityAnalysis.jl, a Julia script"),
@@ -70,6 +71,10 @@ pub(crate) struct Arguments {
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
+    /// With --to urdf: the URDF whose <inertial> and <dynamics> are to become the robot's; all
+    /// other text stays as it is
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
+    pub update: Option<PathBuf>,
     /// What to write
     #[arg(long, value_name = "TOOL", value_parser = choice::<Target>(TARGETS))]
     pub to: Target,
@@ -122,9 +127,16 @@ struct Written {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    if args.update.is_some() && !matches!(args.to, Target::Urdf) {
+        return Err(Error::NothingToUpdate);
+    }
+    let updated = |robot: &Robot| match &args.update {
+        Some(path) => updated_urdf_files(robot, path, &args.lock.lock),
+        None => urdf_files(robot),
+    };
     match args.to {
-        Target::Mjcf => robot(args, mjcf_files, json),
-        Target::Urdf => robot(args, urdf_files, json),
+        Target::Mjcf => robot(args, &mjcf_files, json),
+        Target::Urdf => robot(args, &updated, json),
         Target::Tool(tool) => model(args, tool, json),
     }
 }
@@ -132,7 +144,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 /// Writes a robot: the robot of a model, or a robot that is named.
 fn robot(
     args: &Arguments,
-    files: fn(&Robot) -> Result<Vec<ExportFile>, ExportError>,
+    files: &dyn Fn(&Robot) -> Result<Vec<ExportFile>, ExportError>,
     json: bool,
 ) -> Result<Outcome> {
     write::try_at(&args.out.join("robot.xml"))?;

@@ -18,3 +18,5 @@ pub(crate) mod reach;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod robot;
+pub(crate) mod stop;
+pub(crate) mod verify;

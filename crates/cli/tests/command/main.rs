@@ -30,6 +30,8 @@ mod schema;
 mod schunk;
 mod settings;
 mod short;
+mod stop;
 mod terminal;
 mod verdicts;
+mod verify;
 mod wrong_inputs;

@@ -1,5 +1,5 @@
 //! Every verdict names what it is of: the notion, the settings and the digests of the model and of
-//! each recording. What was left out, or is not the model's, is said.
+//! each recording. What was left out, or is not the model's, is named.
 
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -83,7 +83,7 @@ fn a_check_up_to_a_time_says_so() {
     assert!(model["proof"]["claim"].as_str().unwrap().contains(until), "{model}");
     let check = lab.run("check --model short.json --data data").exits(0);
     assert!(check.stdout.contains("suites, up to 0.3 s"), "{}", check.stdout);
-    assert!(!check.stderr.contains("later than"), "it was said: {}", check.stderr);
+    assert!(!check.stderr.contains("later than"), "printed twice: {}", check.stderr);
 }
 
 /// Returns the finding about recordings that are not the model's.

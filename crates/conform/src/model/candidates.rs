@@ -26,9 +26,9 @@ impl Model {
     /// Returns the model of the file `own` with bounds that count the other models in its folder
     /// which some of the same recordings calibrated. A model of the same sets is not counted.
     ///
-    /// The bound of a calibration holds for one model that was fixed beforehand. Whoever compares
-    /// several models on the motions that calibrate them may choose the luckiest. Models in other
-    /// folders are not known. Files that cannot be read are no models.
+    /// The bound of a calibration holds for one model that was fixed beforehand. The best of
+    /// several models that were compared on the motions that calibrate them may be the luckiest.
+    /// Models in other folders are not known. Files that cannot be read are no models.
     #[must_use]
     pub fn among_others(self, own: &Path) -> Self {
         let Some(calibration) = &self.calibration else { return self };

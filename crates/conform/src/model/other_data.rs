@@ -6,11 +6,11 @@ use crate::data::problem::Problem;
 use crate::model::file::Model;
 use crate::model::records::{DataRecord, RunRecord, SuiteRecord};
 
-/// What differs between the recordings of a check and those of the model, if they are meant to be
-/// the same: they share a recording, or a suite of one name has recordings of the same names.
+/// What differs between the recordings of a check and the model's, if they are meant to be the
+/// same: they share a recording, or a suite of one name has recordings of the same names.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct OtherData {
-    /// Recordings of the model that are not among those of the check.
+    /// Recordings of the model that the check does not have.
     pub missing: Vec<String>,
     /// Recordings whose content is not the model's.
     pub replaced: Vec<Replaced>,
@@ -30,14 +30,14 @@ pub(crate) struct OtherData {
 pub(crate) struct Replaced {
     /// Path in the data set.
     pub file: String,
-    /// Number of samples used: the model's, and those at hand.
+    /// Number of samples used: the model's, and at hand.
     pub samples: [usize; 2],
 }
 
 impl Model {
-    /// Compares the recordings of a problem with those that the model lists, in the suites that
-    /// both have. Returns `None` if nothing differs, if they are other recordings altogether, or if
-    /// either side does not list them.
+    /// Compares the recordings of a problem with the recordings that the model lists, in the suites
+    /// that both have. Returns `None` if nothing differs, if they are other recordings altogether,
+    /// or if either side does not list them.
     pub(crate) fn other_data(&self, problem: &Problem, data: &DataRecord) -> Option<OtherData> {
         if !self.data.are_listed() || !data.are_listed() {
             return None;

@@ -16,7 +16,7 @@ use crate::random::{SplitMix64, uniform};
 pub(super) const HELD_OUT: usize = 4;
 
 /// Motions that the sets are found on.
-const OTHERS: usize = 8;
+const OTHERS: usize = 4;
 
 /// Number of models of which the best is chosen.
 const CANDIDATES: usize = 10;
@@ -24,7 +24,7 @@ const CANDIDATES: usize = 10;
 /// Largest factor, and reciprocal of the smallest, of the candidates' viscous friction.
 const SPREAD: f64 = 1.5;
 
-/// Weight of the pull of the fits: small, as that of an identification by least squares.
+/// Weight of the pull of the fits: small, as if the robot was identified by least squares.
 const PULL: f64 = 0.01;
 
 /// How a model was chosen.

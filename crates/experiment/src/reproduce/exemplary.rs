@@ -163,3 +163,35 @@ fn suite_under(
     let inputs = (0..run.len()).flat_map(|k| run.torque(k).to_vec()).collect();
     Ok((figure, inputs))
 }
+
+#[cfg(test)]
+mod tests {
+    use reachtube_robot::Robot;
+
+    use super::*;
+    use crate::campaign::{CampaignOptions, record};
+    use crate::virtual_robot::VirtualRobotParameters;
+
+    /// Returns the suites in which a joint follows the order of the runs, and all suites.
+    fn drifting(robot: VirtualRobotParameters) -> [usize; 2] {
+        let folder = tempfile::tempdir().unwrap();
+        let few =
+            CampaignOptions { motions: 1, runs: 12, longest: 0.8, robot, ..Default::default() };
+        let options =
+            CampaignOptions { poses: 0, friction: 0, excitation: 0, validation: 0, ..few };
+        record(&Robot::lwa4p(), &options, folder.path(), &|_, _| ()).unwrap();
+        let options = Table2Options::default();
+        table2_and_suite(folder.path(), &options, None, &Silent).unwrap().1.drifting
+    }
+
+    #[test]
+    fn final_positions_follow_the_order_of_the_runs_only_if_the_arm_warms_up() {
+        let warm = VirtualRobotParameters::default();
+        let constant =
+            VirtualRobotParameters { coulomb_rate: 0.0, viscous_rate: 0.0, ..warm.clone() };
+        let [follow, suites] = drifting(warm);
+        assert!(suites == 4 && 2 * follow > suites, "{follow} of {suites}");
+        let [follow, suites] = drifting(constant);
+        assert!(suites == 4 && 2 * follow < suites, "{follow} of {suites}");
+    }
+}

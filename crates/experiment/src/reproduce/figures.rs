@@ -80,7 +80,10 @@ pub fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
     };
     let inputs: Vec<f64> = suite.inputs.iter().skip(joint).step_by(n).copied().collect();
     let recorded = || runs.iter().map(|run| line(&run.times, &run.states[joint], RECORDED));
-    let edges = [&band.lower, &band.upper].map(|edge| line(times, &edge[joint], SET));
+    // The set's upper edge forward in time, then its lower edge back.
+    let edge = |edge: &[f64]| times.iter().copied().zip(edge.to_vec()).collect::<Vec<_>>();
+    let (upper, lower) = (edge(&band.upper[joint]), edge(&band.lower[joint]));
+    let area: Vec<(f64, f64)> = upper.into_iter().chain(lower.into_iter().rev()).collect();
     let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
         title: title.into(),
         x: "time [s]".into(),
@@ -92,7 +95,7 @@ pub fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
     let charts = [
         chart("input u of all runs", "torque [N m]", vec![line(times, &inputs, PLANNED)]),
         chart("robot: its recordings", position, recorded().collect()),
-        chart("model: its reachable set", position, recorded().chain(edges).collect()),
+        Chart { area, ..chart("model: its reachable set", position, recorded().collect()) },
     ];
     let caption = format!(
         "{} of suite {}: open-loop control with compensated gravity and Coulomb friction. One \
@@ -215,8 +218,8 @@ fn planned_chart(motion: &Motion, starts: &[OpenLoop], joint: usize) -> Chart {
 ///
 /// As [`suite_svg`].
 pub fn fig4(suite: &Exemplary) -> Result<PaperFigure> {
-    let by = if suite.figure.runs.iter().all(|run| run.temperature.is_some()) {
-        "temperature"
+    let by = if suite.figure.runs.iter().all(|run| !run.temperatures.is_empty()) {
+        "temperature, each axis over its own range"
     } else {
         "order"
     };
@@ -298,7 +301,11 @@ fn of_joint(figure: &SuiteFigure, joint: usize) -> SuiteFigure {
         runs: figure
             .runs
             .iter()
-            .map(|run| RunTrace { states: pick(&run.states), ..run.clone() })
+            .map(|run| RunTrace {
+                states: pick(&run.states),
+                temperatures: run.temperatures.get(joint).copied().into_iter().collect(),
+                ..run.clone()
+            })
             .collect(),
         ..figure.clone()
     }

@@ -116,8 +116,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Computes a flowpipe and keeps it where it comes further than the best so far. Does nothing
-    /// where that has reached the last sample.
+    /// Computes a flowpipe and keeps it where it comes further than the best so far, unless the
+    /// best has reached the last sample.
     fn attempt(&mut self, settings: &FlowpipeSettings, parts: usize) -> Result<(), ReachError> {
         if self.best.as_ref().is_some_and(|best| best.flowpipe.is_reached()) {
             return Ok(());

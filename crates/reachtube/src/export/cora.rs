@@ -12,6 +12,24 @@ use super::{ExportFile, InputForm, Tool, tables};
 /// Number of terms that one statement adds: MATLAB nests each addition of a sum.
 const TERMS_PER_STATEMENT: usize = 40;
 
+/// Compares bounds, samples x states, with ours; without any class of CORA.
+const COMPARE: &str = "\
+function [outside, ratio] = cora_compare(lower, upper)
+% Compares bounds, one row per sample and one column per state, with bounds.csv: by how many widths
+% ours lie outside at most, and how many times as wide these are at most.
+ours = dlmread('bounds.csv', ',', 1, 0);
+samples = min(size(ours, 1), size(lower, 1));
+states = size(lower, 2);
+low = ours(1:samples, 2:3:3*states-1);
+high = ours(1:samples, 4:3:3*states+1);
+width = max(high - low, 1e-12);
+lower = lower(1:samples, :);
+upper = upper(1:samples, :);
+outside = max(0, max(max(max((lower - low)./width, (high - upper)./width))));
+ratio = max(max((upper - lower)./width));
+end
+";
+
 /// Returns the right-hand side, the data, the script that runs CORA, and points to check the
 /// right-hand side at.
 pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
@@ -20,6 +38,7 @@ pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
         ExportFile::new("cora_reach.m", script(case, form, &header)),
         ExportFile::new("cora_data.m", data(case, form, &header)),
         ExportFile::new("cora_dynamics.m", dynamics(case, form, &header)),
+        ExportFile::new("cora_compare.m", COMPARE.into()),
         tables::check_points(case),
     ]
 }
@@ -112,26 +131,39 @@ fn script(case: &ExportCase, form: InputForm, header: &str) -> String {
         true => "options.linAlg = 'wrapping-free';\n",
         false => "options.alg = 'lin';\noptions.tensorOrder = 2;\n",
     };
+    // The nominal motion has no width.
     let nominal = match form {
-        InputForm::Deviation => "+ ours{k, strcat(names, '_nominal')}'",
+        InputForm::Deviation => {
+            "ours = dlmread('bounds.csv', ',', 1, 0);\nnominal = ours(:, 3:3:end);\n\
+             samples = min(size(ours, 1), size(lower, 1));\n\
+             lower = lower(1:samples, :) + nominal(1:samples, :);\n\
+             upper = upper(1:samples, :) + nominal(1:samples, :);\nt = t(1:samples);\n"
+        }
         _ => "",
     };
     format!(
-        "% Runs CORA (2024 or later) and writes cora_bounds.csv beside our bounds.csv.\n{header}\
+        "% Runs CORA (2024 to 2026), writes cora_bounds.csv, and compares it with bounds.csv.\n\
+         {header}\
          data = cora_data();\n{system}\n\
          params.tFinal = data.horizon;\n\
          params.R0 = zonotope(data.x_start + data.X0_centre, diag(data.X0_radius));\n\
          {input}\
          options.timeStep = data.step;\noptions.taylorTerms = 4;\noptions.zonotopeOrder = 200;\n\
          {options}R = reach(sys, params, options);\n\n\
-         names = {{{}}};\nours = readtable('bounds.csv');\nrows = [];\n\
+         names = {{{}}};\nt = [];\nlower = [];\nupper = [];\n\
          for k = 1:numel(R(1).timePoint.set)\n  \
          box = interval(project(R(1).timePoint.set{{k}}, 1:{}));\n  \
-         rows(k, :) = [R(1).timePoint.time{{k}}, (infimum(box) {nominal})', ...\n    \
-         (supremum(box) {nominal})'];\nend\n\
-         head = [{{'t'}}, strcat(names, '_lower'), strcat(names, '_upper')];\n\
-         writetable(array2table(rows, 'VariableNames', head), 'cora_bounds.csv');\n\
-         disp('{TOOL}: wrote cora_bounds.csv');\n",
+         t(k, 1) = R(1).timePoint.time{{k}};\n  \
+         lower(k, :) = infimum(box)';\n  upper(k, :) = supremum(box)';\nend\n{nominal}\
+         file = fopen('cora_bounds.csv', 'w');\nfprintf(file, 't');\n\
+         head = [strcat(names, '_lower'), strcat(names, '_upper')];\n\
+         fprintf(file, ',%s', head{{:}});\n\
+         fprintf(file, '\\n');\nfclose(file);\n\
+         dlmwrite('cora_bounds.csv', [t, lower, upper], '-append', 'precision', 17);\n\
+         [outside, ratio] = cora_compare(lower, upper);\n\
+         fprintf(['{TOOL}: wrote cora_bounds.csv, %d samples; bounds.csv is at most %.3g ' ...\n  \
+         'widths outside, and the sets are at most %.4g times as wide\\n'], ...\n  \
+         numel(t), outside, ratio);\n",
         case.system.states[..2 * inputs]
             .iter()
             .map(|name| format!("'{name}'"))

@@ -12,7 +12,7 @@ pub enum ExportError {
     /// The tool takes affine systems only.
     #[error(
         "{tool} takes affine systems only, but {model} has terms of degree {degree}; export it to \
-         cora, flowstar, spaceex or juliareach, or find sets for model 1 of order 1"
+         cora, flowstar or spaceex, or find sets for model 1 of order 1"
     )]
     NotAffine {
         /// The tool.
@@ -21,6 +21,17 @@ pub enum ExportError {
         model: String,
         /// Its degree in states and inputs together.
         degree: u32,
+    },
+    /// The tool has no disturbance for polynomial systems.
+    #[error(
+        "{tool} has no input that changes with time for systems such as {model}, so that its set \
+         would prove nothing; export it to cora or flowstar, or find sets for model 1 of order 1"
+    )]
+    NoDisturbance {
+        /// The tool.
+        tool: Tool,
+        /// The model, in words.
+        model: String,
     },
     /// Deviations from a nominal motion have no equation of their own.
     #[error(
@@ -80,6 +91,22 @@ pub enum ExportError {
         robot: String,
         /// The joint that moves the link.
         joint: String,
+    },
+    /// A URDF cannot be read or written.
+    #[error(transparent)]
+    Robot(#[from] reachtube_robot::RobotError),
+    /// A URDF that was to be updated describes another arm.
+    #[error(
+        "{path}: with the inertia of robot {robot} its torques differ by {error:.1e} of the \
+         largest, so its links lie elsewhere; name the URDF that the robot was identified with"
+    )]
+    OtherGeometry {
+        /// The robot.
+        robot: String,
+        /// The URDF file.
+        path: String,
+        /// The largest difference of torques, relative to the largest torque.
+        error: f64,
     },
     /// A written URDF is not read back.
     #[error(

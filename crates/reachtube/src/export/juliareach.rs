@@ -2,17 +2,16 @@
 
 use std::fmt::Write;
 
+use reachtube_reach::LinearSystem;
+
 use super::case::ExportCase;
 use super::meaning::Meaning;
-use super::system::Polynomial;
-use super::text::{comment, number, numbers, rows, sum, terms};
+use super::text::{comment, number, numbers, rows};
 use super::{ExportFile, InputForm, Tool};
-
-/// Number of terms of one sum: TMJets nests them.
-const TERMS_PER_SUM: usize = 20;
 
 /// Returns the script.
 pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
+    let Some(system) = &case.system.linear else { return Vec::new() };
     let mut text = comment("#", &Meaning::new(case, Tool::JuliaReach, form).paragraphs);
     text += "# Run: julia juliareach.jl, with ReachabilityAnalysis.jl installed.\n\
              using ReachabilityAnalysis\n\n";
@@ -29,10 +28,7 @@ pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
     }
     let _ = writeln!(text, "step = {}", number(case.step()));
     let _ = writeln!(text, "horizon = {}", number(case.horizon()));
-    text += &match case.system.linear.is_some() {
-        true => affine(case, form),
-        false => polynomial(case),
-    };
+    text += &affine(system, form);
     let names: Vec<String> =
         case.system.states[..2 * case.joints()].iter().map(|name| format!("\"{name}\"")).collect();
     let _ = write!(
@@ -51,8 +47,7 @@ pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
 }
 
 /// Returns an affine problem and its solution by support functions.
-fn affine(case: &ExportCase, form: InputForm) -> String {
-    let Some(system) = &case.system.linear else { return String::new() };
+fn affine(system: &LinearSystem, form: InputForm) -> String {
     let drift: Vec<f64> = match form {
         InputForm::Deviation => vec![0.0; system.states()],
         _ => system.drift().iter().copied().collect(),
@@ -69,47 +64,4 @@ fn affine(case: &ExportCase, form: InputForm) -> String {
         numbers(drift, ", "),
         system.states(),
     )
-}
-
-/// Returns a polynomial problem, whose inputs are states that stay constant, and its solution by
-/// Taylor models.
-fn polynomial(case: &ExportCase) -> String {
-    let (dimension, inputs) = (case.system.dimension(), case.joints());
-    let mut text = format!(
-        "states = {}\n# x = ({}, {})\n@taylorize function dynamics!(dx, x, p, t)\n",
-        dimension + inputs,
-        case.system.states.join(", "),
-        case.system.inputs.join(", ")
-    );
-    for (i, rate) in case.system.rates.iter().enumerate() {
-        text += &equation(i + 1, rate);
-    }
-    for i in dimension..dimension + inputs {
-        let _ = writeln!(text, "    dx[{}] = zero(x[{}])", i + 1, i + 1);
-    }
-    text += "    return dx\nend\n\
-             X0 = Hyperrectangle([x_start + X0_centre; U_centre], [X0_radius; U_radius])\n\
-             problem = @ivp(x' = dynamics!(x), dim: states, x(0) ∈ X0)\n\
-             sol = solve(problem; T=horizon, alg=TMJets(abstol=1e-12, orderT=6, orderQ=2, \
-             maxsteps=100_000))\nsol = overapproximate(sol, Zonotope)\n";
-    text
-}
-
-/// Returns the equation of state `row`, in partial sums.
-fn equation(row: usize, rate: &Polynomial) -> String {
-    let terms = terms(rate, &|variable| format!("x[{}]", variable + 1));
-    if terms.is_empty() {
-        return format!("    dx[{row}] = zero(x[{row}])\n");
-    }
-    let mut text = String::new();
-    let mut names = Vec::new();
-    for (part, chunk) in terms.chunks(TERMS_PER_SUM).enumerate() {
-        let name = format!("s{row}_{}", part + 1);
-        let chunk = sum(chunk, " ");
-        // A line that starts with a sign would be a statement of its own.
-        let _ = writeln!(text, "    {name} = ({})", chunk.strip_prefix("+ ").unwrap_or(&chunk));
-        names.push(name);
-    }
-    let _ = writeln!(text, "    dx[{row}] = {}", names.join(" + "));
-    text
 }

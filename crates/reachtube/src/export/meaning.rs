@@ -34,7 +34,7 @@ impl Meaning {
     /// Returns what `tool` computes from `case` with its input in this form.
     #[must_use]
     pub fn new(case: &ExportCase, tool: Tool, form: InputForm) -> Self {
-        let known = known(case, tool);
+        let known = if tool == Tool::HyLaa { Known::Sample } else { Known::Measurable };
         let asked = match case.disturbance {
             Disturbance::Constant => Known::Constant,
             Disturbance::Sample => Known::Sample,
@@ -65,15 +65,6 @@ impl Meaning {
     }
 }
 
-/// Returns the disturbances that a tool knows for a case.
-fn known(case: &ExportCase, tool: Tool) -> Known {
-    match tool {
-        Tool::HyLaa => Known::Sample,
-        Tool::JuliaReach if case.system.linear.is_none() => Known::Constant,
-        _ => Known::Measurable,
-    }
-}
-
 fn what_is_computed(case: &ExportCase, tool: Tool, form: InputForm) -> String {
     let affine = case.system.linear.is_some();
     let who = match tool {
@@ -91,11 +82,6 @@ fn what_is_computed(case: &ExportCase, tool: Tool, form: InputForm) -> String {
         InputForm::Deviation => {
             "the deviations from the nominal motion under a disturbance in U. The nominal motion \
              (bounds.csv) plus its set is the reachable set."
-        }
-        InputForm::Range if tool == Tool::JuliaReach && !affine => {
-            "the states under every constant input in the box of all recorded inputs plus U: \
-             TMJets has no input u(t), so the input is a state that stays where it starts. The \
-             recorded input is not constant."
         }
         InputForm::Range => {
             "the states under any input in the box of all recorded inputs plus U. This box \
@@ -124,22 +110,20 @@ fn about_disturbance(known: Known, asked: Known) -> String {
 fn about_tool(case: &ExportCase, tool: Tool, form: InputForm) -> &'static str {
     let affine = case.system.linear.is_some();
     match tool {
-        Tool::FlowStar if form == InputForm::Recorded => {
-            "Flow* takes an interval constant as a fresh value in each place: a disturbance that \
-             acts on several joints is not one disturbance there, which widens the set. The \
-             recorded input is a state that jumps at each sample, and the guards of the jumps \
-             widen the set too."
+        Tool::FlowStar if affine && form != InputForm::Recorded => {
+            "Flow* bounds what a disturbance does in a step by a box: one that acts on several \
+             joints is not one disturbance there, which widens the set. It computes with intervals."
         }
         Tool::FlowStar => {
             "Flow* takes an interval constant as a fresh value in each place: a disturbance that \
-             acts on several joints is not one disturbance there, which widens the set."
+             acts on several joints is not one disturbance there, which widens the set. It \
+             computes with Taylor models, whose remainders are proved."
         }
         Tool::SpaceEx if !affine => {
             "SpaceEx itself takes affine flows only and refuses this file, which is a carrier for \
              programs that read its format with polynomial flows, such as Hyst and CORA."
         }
         Tool::HyLaa => "HyLAA has no bounds between samples.",
-        Tool::JuliaReach if !affine => "TMJets computes with directed rounding.",
         Tool::Cora | Tool::SpaceEx | Tool::XSpeed | Tool::JuliaReach => {
             "The computation is in floating point without directed rounding."
         }

@@ -77,6 +77,9 @@ impl Tool {
             let degree = case.system.degree();
             return Err(ExportError::NotAffine { tool: self, model: model(), degree });
         }
+        if !affine && self == Self::JuliaReach {
+            return Err(ExportError::NoDisturbance { tool: self, model: model() });
+        }
         if !affine && form == InputForm::Deviation {
             let remedy = self.default_form(case);
             return Err(ExportError::DeviationOfPolynomial { model: model(), remedy });

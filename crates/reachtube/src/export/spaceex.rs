@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use super::case::{ExportCase, bounds};
-use super::flowstar::{jump, window};
 use super::meaning::Meaning;
 use super::text::{comment, number, terms};
 use super::{ExportFile, InputForm, Tool};
@@ -13,14 +12,14 @@ pub(super) fn files(case: &ExportCase, tool: Tool, form: InputForm) -> Vec<Expor
     let lines = Meaning::new(case, tool, form).paragraphs;
     let name = if tool == Tool::XSpeed { "xspeed" } else { "spaceex" };
     vec![
-        ExportFile::new(&format!("{name}.xml"), model(case, form, &lines)),
+        ExportFile::new(&format!("{name}.xml"), model(case, tool, form, &lines)),
         ExportFile::new(&format!("{name}.cfg"), configuration(case, tool, form, &lines)),
     ]
 }
 
 /// Returns the automaton: one location, in which U is the invariant of inputs that nothing
 /// controls. A recorded input is a variable that jumps at each sample.
-fn model(case: &ExportCase, form: InputForm, lines: &[String]) -> String {
+fn model(case: &ExportCase, tool: Tool, form: InputForm, lines: &[String]) -> String {
     let recorded = form == InputForm::Recorded;
     let param = |name: &str, controlled: bool| {
         format!(
@@ -33,7 +32,7 @@ fn model(case: &ExportCase, form: InputForm, lines: &[String]) -> String {
         let held = jump(case, 0).into_iter().map(|(name, _)| name).chain(["t".into()]);
         held.for_each(|name| params += &param(&name, true));
     }
-    (0..case.joints()).for_each(|j| params += &param(&disturbance(j), false));
+    (0..case.joints()).for_each(|j| params += &param(&disturbance(tool, j), false));
     let transitions: String = match recorded {
         true => (1..case.steps()).map(|k| transition(case, k)).collect(),
         false => String::new(),
@@ -48,20 +47,37 @@ fn model(case: &ExportCase, form: InputForm, lines: &[String]) -> String {
          </component>\n</sspaceex>\n",
         // Two hyphens would end the comment.
         comment(" ", lines).replace("--", "- -"),
-        escaped(&invariant(case, form)),
-        escaped(&flow(case, form)),
+        escaped(&invariant(case, tool, form)),
+        escaped(&flow(case, tool, form)),
     )
 }
 
-fn disturbance(j: usize) -> String {
-    format!("du{}", j + 1)
+/// Returns the command of XSpeed, which reads neither times nor variables from its files.
+fn command(case: &ExportCase) -> String {
+    format!(
+        "#\n# XSpeed reads its times and variables from the command line only:\n\
+         # xspeed -m xspeed.xml -c xspeed.cfg --time-horizon {} --time-step {} -v q1,qd1 \
+         -o q1.txt\n\
+         # Model-Translator.jar of XSpeed must be in this folder, and java installed.\n",
+        number(case.horizon()),
+        number(case.step()),
+    )
 }
 
-fn invariant(case: &ExportCase, form: InputForm) -> String {
+/// Returns the name of a disturbance. XSpeed takes a variable for an input if its name begins with
+/// u; SpaceEx has the held input under that name.
+fn disturbance(tool: Tool, j: usize) -> String {
+    match tool {
+        Tool::XSpeed => format!("u{}", j + 1),
+        _ => format!("du{}", j + 1),
+    }
+}
+
+fn invariant(case: &ExportCase, tool: Tool, form: InputForm) -> String {
     let sides = bounds(&case.input_set(form)).into_iter().enumerate();
     let mut parts: Vec<String> = sides
         .map(|(j, side)| {
-            let name = disturbance(j);
+            let name = disturbance(tool, j);
             format!("{name} >= {} & {name} <= {}", number(side.lo()), number(side.hi()))
         })
         .collect();
@@ -71,12 +87,12 @@ fn invariant(case: &ExportCase, form: InputForm) -> String {
     parts.join(" &\n        ")
 }
 
-fn flow(case: &ExportCase, form: InputForm) -> String {
+fn flow(case: &ExportCase, tool: Tool, form: InputForm) -> String {
     let (system, recorded) = (&case.system, form == InputForm::Recorded);
     let name = |variable: usize| match variable.checked_sub(system.dimension()) {
         None => system.states[variable].clone(),
-        Some(j) if recorded => format!("(u{} + {})", j + 1, disturbance(j)),
-        Some(j) => disturbance(j),
+        Some(j) if recorded => format!("(u{} + {})", j + 1, disturbance(tool, j)),
+        Some(j) => disturbance(tool, j),
     };
     let mut parts: Vec<String> = Vec::new();
     for (state, rate) in system.states.iter().zip(&system.rates) {
@@ -93,6 +109,22 @@ fn flow(case: &ExportCase, form: InputForm) -> String {
         parts.extend(["left' == -1.0".into(), "t' == 1.0".into()]);
     }
     parts.join(" &\n        ")
+}
+
+/// Returns the values that the states take at sample `k`: the held input, and its duration.
+fn jump(case: &ExportCase, k: usize) -> Vec<(String, f64)> {
+    let held = case.input(k).iter().enumerate().map(|(j, u)| (format!("u{}", j + 1), *u));
+    let span = match case.grid.step() {
+        Some(step) => step,
+        None => case.grid.times()[k + 1] - case.grid.times()[k],
+    };
+    held.chain([("left".into(), span)]).collect()
+}
+
+/// Returns the middles of the spans before and after sample `k`, s, between which its jump is.
+fn window(case: &ExportCase, k: usize) -> [f64; 2] {
+    let times = case.grid.times();
+    [k - 1, k].map(|from| 0.5 * (times[from] + times[from + 1]))
 }
 
 fn transition(case: &ExportCase, k: usize) -> String {
@@ -129,6 +161,9 @@ fn configuration(case: &ExportCase, tool: Tool, form: InputForm, lines: &[String
         _ => 0,
     };
     let mut text = comment("#", lines);
+    if tool == Tool::XSpeed {
+        text += &command(case);
+    }
     let _ = write!(
         text,
         "system = \"model\"\ninitially = \"{}\"\nforbidden = \"\"\nscenario = \"supp\"\n\

@@ -1,6 +1,7 @@
-//! Flow*'s model file, and SpaceEx's and XSpeed's XML and configuration.
+//! Flow*'s model file and program, and SpaceEx's and XSpeed's XML and configuration.
 
 use reachtube::export::{ExportCase, InputForm, Polynomial, Tool, bounds};
+use reachtube::reach::LinearSystem;
 use reachtube::scalar::Interval;
 
 use crate::cases::{in_clean_clones, recorded, text, uneven};
@@ -78,76 +79,103 @@ fn assert_sides(read: &[f64], sides: &[Interval]) {
 }
 
 fn flowstar(case: &ExportCase, form: InputForm) {
+    match &case.system.linear {
+        Some(system) if form != InputForm::Recorded => flowstar_model(case, form, system),
+        _ => flowstar_program(case, form),
+    }
+}
+
+/// Reads the linear model: A to the bit, and disturbances and constants that enclose ours.
+fn flowstar_model(case: &ExportCase, form: InputForm, system: &LinearSystem) {
     let text = text(case, Tool::FlowStar, form, "flowstar.model");
-    let names = names(case, form);
-    assert_eq!(between(&text, "state var ", "\n"), names.join(", "));
+    let states = &case.system.states;
+    assert_eq!(between(&text, "state var ", "\n"), states.join(", "));
+    let parameters: Vec<String> = (1..=case.joints()).map(|j| format!("w{j}")).collect();
+    assert_eq!(between(&text, "time-var { ", " }"), parameters.join(", "));
+    let equations = between(&text, " }\n    {\n", "    }\n");
+    assert_eq!(equations.lines().count(), states.len());
     let sides = bounds(&case.input_set(form));
-    let disturbance = |text: &str| {
-        let read = numbers_between(text, "[", "]");
-        sides.iter().position(|side| [side.lo(), side.hi()] == read[..])
-    };
-    let held = |name: &str| -> Option<usize> {
-        let (held, set) = name.strip_prefix("(u")?.strip_suffix(')')?.split_once(" + ")?;
-        let j = disturbance(set)?;
-        assert_eq!(held, (j + 1).to_string());
-        Some(j)
-    };
-    let variable = |name: &str| -> Option<usize> {
-        let input = match form {
-            InputForm::Recorded => held(name),
-            _ if name.starts_with('[') => disturbance(name),
-            _ => None,
-        };
-        let state = || case.system.states.iter().position(|state| state == name);
-        input.map(|j| case.system.dimension() + j).or_else(state)
-    };
-    let equations = between(&text, "poly ode 1\n  {\n", "\n  }").replace("\n        ", " ");
-    let mut rates = Vec::new();
-    for (line, name) in joined(&equations).iter().zip(&names) {
-        let right = line.strip_prefix(&format!("{name}' = ")).expect(line);
+    for (i, line) in equations.lines().enumerate() {
+        let right = line.trim().strip_prefix(&format!("{}' = ", states[i])).expect(line);
         // The lexer takes a plus without a left side for an error.
         assert!(!right.starts_with('+'));
-        rates.push(polynomial(right, &|name| variable(name)));
+        let (sum, constant) = right.rsplit_once('[').unwrap();
+        let constant = numbers_between(&format!("[{constant}"), "[", "]");
+        let name = |name: &str| {
+            let own = states.iter().chain(&parameters).position(|own| own == name);
+            own.filter(|_| !name.is_empty())
+        };
+        let read = polynomial(sum.trim_end().trim_end_matches('+'), &name);
+        let mut row = vec![0.0; states.len() + case.joints()];
+        for term in &read.terms {
+            row[term.factors[0].variable] = term.coefficient;
+        }
+        let a: Vec<f64> = system.a().row(i).iter().copied().collect();
+        // A zero has no term.
+        assert!(row.iter().zip(&a).all(|(read, a)| read == a), "{line}");
+        let mut middle = if form == InputForm::Deviation { 0.0 } else { system.drift()[i] };
+        for (j, side) in sides.iter().enumerate() {
+            let exact = system.b()[(i, j)] * side.rad();
+            let read = row[states.len() + j];
+            let size = exact.abs().max(f64::MIN_POSITIVE);
+            assert!(
+                read.abs() >= exact.abs() && read.abs() - exact.abs() <= 1e-14 * size,
+                "{line}"
+            );
+            assert!(read == 0.0 || read.is_sign_negative() == exact.is_sign_negative());
+            middle += system.b()[(i, j)] * side.mid();
+        }
+        let slack = 1e-13 * (1.0 + middle.abs());
+        assert!(constant[0] <= middle + slack && middle - slack <= constant[1], "{line}");
+        assert!(constant[1] - constant[0] <= 1e-12 * (1.0 + middle.abs()), "{line}");
     }
-    let dimension = case.system.dimension();
-    assert_eq!(rates[..dimension], expected(case, form)[..]);
-    let initial = between(&text, "  init\n  {\n", "\n  }\n");
-    let read: Vec<f64> = initial
+    let read: Vec<f64> = between(&text, "  init\n  {\n", "\n  }\n")
         .lines()
-        .filter(|line| line.contains(" in "))
         .flat_map(|line| numbers_between(line, "[", "]"))
         .collect();
-    assert_sides(&read[..2 * dimension], &case.initial_state(form).bounds());
+    assert_sides(&read, &case.initial_state(form).bounds());
     assert_eq!(number(between(&text, "    time ", "\n")), case.horizon());
-    if form == InputForm::Recorded {
-        let start: Vec<f64> = read[2 * dimension..].iter().copied().step_by(2).collect();
-        let resets: Vec<Vec<f64>> = text.split("reset {").skip(1).map(reset).collect();
-        assert_eq!([&[start[..start.len() - 1].to_vec()], &resets[..]].concat(), jumps(case));
-        let windows: Vec<[f64; 2]> = text
-            .split("guard { left = 0.0 t in ")
-            .skip(1)
-            .map(|text| numbers_between(text, "[", "]").try_into().unwrap())
-            .collect();
-        assert_windows(&windows, case);
-    }
+    assert_eq!(number(between(&text, "fixed steps ", "\n")), case.step());
 }
 
-/// Reads the values of `u1' := 0.5 u2' := -1.5 }`.
-fn reset(text: &str) -> Vec<f64> {
-    let text = &text[..text.find('}').unwrap()];
-    text.split(":=").skip(1).map(|part| number(part.split_whitespace().next().unwrap())).collect()
+/// Reads the program: its polynomials, sets, times and inputs to the bit.
+fn flowstar_program(case: &ExportCase, form: InputForm) {
+    let text = text(case, Tool::FlowStar, form, "flowstar.cpp");
+    let states = &case.system.states;
+    let rates = between(&text, "  return {\n", "  };\n");
+    let variable = |name: &str| {
+        let input = name.strip_prefix("u[").and_then(|rest| rest.strip_suffix(']'));
+        let input = input.map(|j| states.len() + j.parse::<usize>().unwrap());
+        input.or_else(|| states.iter().position(|state| state == name))
+    };
+    let read: Vec<Polynomial> = rates
+        .split(",\n")
+        .filter(|sum| !sum.trim().is_empty())
+        .map(|sum| {
+            let sum = sum.replace("\" + u[", "u[").replace("] + \"", "]").replace(['"', '\n'], "");
+            assert!(!sum.trim_start().starts_with('+'));
+            polynomial(&sum, &variable)
+        })
+        .collect();
+    assert_eq!(read, case.system.rates);
+    let table = |name: &str| numbers_of(between(&text, &format!("const double {name}"), "};"));
+    let of = |sides: &[Interval]| -> Vec<f64> {
+        sides.iter().flat_map(|side| [side.lo(), side.hi()]).collect()
+    };
+    assert_bits(&table("X0[][2] ="), &of(&case.initial_state(form).bounds()), "X0");
+    assert_bits(&table("U[][2] ="), &of(&bounds(&case.input_set(form))), "U");
+    assert_bits(&table("TIMES[] ="), case.grid.times(), "times");
+    let inputs = match form {
+        InputForm::Recorded => case.inputs[..case.steps() * case.joints()].to_vec(),
+        _ => vec![0.0; case.joints()],
+    };
+    assert_bits(&table("INPUTS[][JOINTS] ="), &inputs, "inputs");
 }
 
-/// Joins the lines that continue a sum.
-fn joined(text: &str) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for line in text.lines() {
-        match line.contains("' = ") {
-            true => lines.push(line.trim().into()),
-            false => *lines.last_mut().unwrap() += &format!(" {}", line.trim()),
-        }
-    }
-    lines
+/// Reads the numbers of a braced list.
+fn numbers_of(text: &str) -> Vec<f64> {
+    let words = text.split(|c: char| c.is_whitespace() || "{},".contains(c));
+    words.filter(|word| !word.is_empty()).map(number).collect()
 }
 
 fn spaceex(case: &ExportCase, tool: Tool, form: InputForm, name: &str) {
@@ -160,7 +188,9 @@ fn spaceex(case: &ExportCase, tool: Tool, form: InputForm, name: &str) {
         kept.map(|node| node.attribute("name").unwrap().to_string()).collect()
     };
     let (names, dimension) = (names(case, form), case.system.dimension());
-    let disturbances: Vec<String> = (1..=case.joints()).map(|j| format!("du{j}")).collect();
+    // XSpeed takes a variable for an input if its name begins with u.
+    let prefix = if tool == Tool::XSpeed { "u" } else { "du" };
+    let disturbances: Vec<String> = (1..=case.joints()).map(|j| format!("{prefix}{j}")).collect();
     assert_eq!((params("true"), params("false")), (names.clone(), disturbances.clone()));
     let variable = |name: &str| {
         let input = disturbances.iter().enumerate().position(|(j, du)| match form {
@@ -183,7 +213,7 @@ fn spaceex(case: &ExportCase, tool: Tool, form: InputForm, name: &str) {
     assert_eq!(rates, expected(case, form));
     assert_eq!(flow.split(" & ").count(), names.len());
     let sides: Vec<f64> =
-        content("invariant").split(" & ").filter(|part| part.contains("du")).map(bound).collect();
+        content("invariant").split(" & ").filter(|part| part.contains('u')).map(bound).collect();
     assert_sides(&sides, &bounds(&case.input_set(form)));
     let start = spaceex_start(case, form, &text(case, tool, form, &format!("{name}.cfg")));
     if form == InputForm::Recorded {

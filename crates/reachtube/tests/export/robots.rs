@@ -1,7 +1,9 @@
 //! MJCF and URDF: URDF is read back by our own reader, and its torques are the robot's.
 
 use reachtube::Robot;
-use reachtube::export::robot::{UrdfFiles, check_torques, mjcf, urdf};
+use reachtube::export::robot::{
+    Damping, UrdfFiles, check_torques, mjcf, mjcf_files, updated_urdf, urdf,
+};
 use reachtube::robot::{Urdf, UrdfOptions};
 
 use crate::cases::{Numbers, every_kind, shared};
@@ -42,7 +44,7 @@ fn urdf_of_recorded_robots_has_their_torques() {
 
 #[test]
 fn mjcf_nests_one_body_per_joint() {
-    let text = mjcf(&every_kind()).unwrap();
+    let text = mjcf(&every_kind(), Damping::Polynomial).unwrap();
     let document = roxmltree::Document::parse(&text).unwrap();
     let joints: Vec<_> = document.descendants().filter(|node| node.has_tag_name("joint")).collect();
     let values =
@@ -50,13 +52,16 @@ fn mjcf_nests_one_body_per_joint() {
     assert_eq!(values("type"), ["hinge", "slide", "hinge"]);
     assert_eq!(values("armature"), ["0.2", "0.4", "0.0"]);
     assert_eq!((values("damping")[0], values("frictionloss")[0]), ("1.5", "2.0"));
+    let motors = document.descendants().filter(|node| node.has_tag_name("motor"));
+    let motors: Vec<_> = motors.map(|node| node.attribute("joint").unwrap()).collect();
+    assert_eq!(motors, values("name"));
     let depth = joints[2].ancestors().filter(|node| node.has_tag_name("body")).count();
     assert_eq!(depth, 3);
 }
 
 #[test]
 fn masses_that_no_simulator_takes_are_refused_by_name() {
-    let error = mjcf(&Robot::lwa4p()).unwrap_err().to_string();
+    let error = mjcf(&Robot::lwa4p(), Damping::Line).unwrap_err().to_string();
     assert!(error.contains("Schunk LWA 4P") && error.contains("model.physical"), "{error}");
     let mut description = every_kind().description().clone();
     description.parameters = reachtube::robot::ParameterSet::Base;
@@ -81,7 +86,77 @@ fn a_name_ends_no_comment() {
     let mut description = every_kind().description().clone();
     description.name = "arm\n--><mujoco \"\"\"".into();
     let robot = Robot::from_description(&description).unwrap();
-    let text = mjcf(&robot).unwrap();
+    let text = mjcf(&robot, Damping::Line).unwrap();
     let document = roxmltree::Document::parse(&text).unwrap();
     assert_eq!(document.root_element().attribute("model").unwrap().matches('_').count(), 4);
+}
+
+/// The pendulum with friction that bends down, recorded between -1 and 2 rad/s.
+fn curved() -> Robot {
+    let mut description = pendulum().description().clone();
+    description.joints[0].friction.viscous = [3.0, 0.2, -0.5];
+    description.joints[0].friction.fitted_velocities = Some([-1.0, 2.0]);
+    Robot::from_description(&description).unwrap()
+}
+
+#[test]
+fn cubic_friction_is_exact_in_one_file_and_the_best_line_in_the_other() {
+    let files = mjcf_files(&curved()).unwrap();
+    let damping = |name: &str| {
+        let text = &files.iter().find(|file| file.name == name).unwrap().text;
+        let document = roxmltree::Document::parse(text).unwrap();
+        let joint = document.descendants().find(|node| node.has_tag_name("joint")).unwrap();
+        joint.attribute("damping").unwrap().to_string()
+    };
+    assert_eq!(damping("robot.xml"), "3.0 0.0 -0.5");
+    let line: f64 = damping("robot_linear.xml").parse().unwrap();
+    // Least squares over many velocities, by sums.
+    let (mut both, mut squares) = (0.0, 0.0);
+    for k in 0..3000 {
+        let v = -1.0 + (f64::from(k) + 0.5) * 1e-3;
+        both += v * (3.0 * v + 0.2 * v * v - 0.5 * v * v * v);
+        squares += v * v;
+    }
+    assert!((line - both / squares).abs() < 1e-5, "{line} {}", both / squares);
+    let urdf = urdf(&curved()).unwrap().urdf;
+    assert!(urdf.contains("best line over the velocities -1.000 to 2.000"), "{urdf}");
+    // A line needs one file only.
+    assert!(mjcf_files(&pendulum()).unwrap().iter().all(|file| file.name != "robot_linear.xml"));
+}
+
+#[test]
+fn an_updated_urdf_keeps_all_other_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm.urdf");
+    let UrdfFiles { urdf: written, companion } = urdf(&every_kind()).unwrap();
+    let mesh = "<visual><geometry><mesh filename=\"arm.stl\"/></geometry></visual>\n  </link>";
+    let text = written.replacen("</link>", mesh, 1) + "<!-- mine -->\n";
+    std::fs::write(&path, &text).unwrap();
+    std::fs::write(path.with_extension("toml"), companion).unwrap();
+    let robot = Urdf::load(&path, &UrdfOptions::default()).unwrap().into_robot();
+    // The same robot changes nothing.
+    assert_eq!(updated_urdf(&robot, &path, &[]).unwrap().urdf, text);
+    let mut description = robot.description().clone();
+    description.joints[1].mass *= 1.5;
+    description.joints[0].friction.viscous = [7.0, 0.0, 0.0];
+    let heavier = Robot::from_description(&description).unwrap();
+    let UrdfFiles { urdf: new, companion } = updated_urdf(&heavier, &path, &[]).unwrap();
+    let kept = |line: &&str| {
+        let own = ["<mass", "<inertia", "<origin", "<dynamics"];
+        !own.iter().any(|tag| line.trim_start().starts_with(tag))
+    };
+    assert!(new.lines().filter(kept).eq(text.lines().filter(kept)));
+    assert_ne!(new, text);
+    let options = UrdfOptions::default();
+    let read = Urdf::parse_with(&new, "new", &companion, &options).unwrap().into_robot();
+    let state = [[0.3, -0.4, 0.1], [0.5, 0.2, -0.3], [1.0, -2.0, 0.5]];
+    let torques = |robot: &Robot| robot.inverse_dynamics(&state[0], &state[1], &state[2]);
+    assert!((torques(&read) - torques(&heavier)).amax() < 1e-12);
+    // A URDF with links elsewhere is refused.
+    let (before, after) = text.split_at(text.find("name=\"slide\"").unwrap());
+    let moved = before.to_string() + &after.replacen("xyz=\"-", "xyz=\"-1", 1);
+    assert_ne!(moved, text);
+    std::fs::write(&path, moved).unwrap();
+    let error = updated_urdf(&heavier, &path, &[]).unwrap_err().to_string();
+    assert!(error.contains("arm.urdf") && error.contains("lie elsewhere"), "{error}");
 }

@@ -2,6 +2,7 @@
 //! values back.
 
 mod chain;
+pub(crate) mod collision;
 mod companion;
 mod describe;
 mod document;

@@ -6,6 +6,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use num_traits::{One, Zero};
 
 use super::closed::Interval;
+use crate::dispatch::Dispatch;
 use crate::rounding::{
     add_down, add_up, bounds_of_rounded, div_down, div_up, is_far_from_underflow, mul_down, mul_up,
 };
@@ -151,6 +152,8 @@ impl One for Interval {
         Interval::ONE
     }
 }
+
+impl Dispatch for Interval {}
 
 impl Sum for Interval {
     fn sum<I: Iterator<Item = Interval>>(terms: I) -> Interval {

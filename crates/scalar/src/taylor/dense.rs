@@ -5,6 +5,7 @@ use core::array::from_fn;
 use super::addition::{Addition, negated_if};
 use super::space::TaylorSpace;
 use super::sparse::Term;
+use crate::dispatch::Kernel;
 use crate::scalar::Scalar;
 
 /// The coefficients of a dense series and a record of its zero blocks.
@@ -34,6 +35,7 @@ impl<'a, C: Scalar> DenseSeries<'a, C> {
 
     /// Returns the block of one degree. It is empty where the block is known to be zero or lies
     /// above the last stored degree.
+    #[inline(always)]
     pub(super) fn block(&self, degree: u32) -> &'a [C] {
         let known_zero = self.zero_blocks[degree as usize / 64] >> (degree % 64) & 1 == 1;
         let block = self.space.block(degree);
@@ -59,22 +61,71 @@ pub(super) fn product<C: Scalar>(space: &TaylorSpace, x: &[C], y: &[C]) -> Vec<C
     let (x, y) = (DenseSeries::new(space, x), DenseSeries::new(space, y));
     let high = (x.degree() + y.degree()).min(space.order());
     let mut out = vec![C::zero(); space.dense_len(high)];
-    for degree in 0..=high {
-        let block = &mut out[space.block(degree)];
-        if let [x0] = x.block(0) {
-            add_scaled(block, x0, y.block(degree));
-        }
-        if let ([y0], 1..) = (y.block(0), degree) {
-            add_scaled(block, y0, x.block(degree));
-        }
-        add_inner_products(space, degree, &x, &y, block);
-    }
+    C::dispatch(Product { space, x: &x, y: &y, out: &mut out });
     out
+}
+
+/// A product of two dense series, to be added to `out`.
+struct Product<'a, C> {
+    space: &'a TaylorSpace,
+    x: &'a DenseSeries<'a, C>,
+    y: &'a DenseSeries<'a, C>,
+    out: &'a mut [C],
+}
+
+impl<C: Scalar> Kernel for Product<'_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { space, x, y, out } = self;
+        let high = degree(space, out.len());
+        for degree in 0..=high {
+            let block = &mut out[space.block(degree)];
+            if let [x0] = x.block(0) {
+                add_scaled(block, x0, y.block(degree));
+            }
+            if let ([y0], 1..) = (y.block(0), degree) {
+                add_scaled(block, y0, x.block(degree));
+            }
+            inner_products(space, degree, x, y, block);
+        }
+    }
 }
 
 /// Adds Σ x_i y_{d-i} over 0 < i < d to `out`, the block of degree d; x_i is the part of x of
 /// degree i.
 pub(super) fn add_inner_products<C: Scalar>(
+    space: &TaylorSpace,
+    d: u32,
+    x: &DenseSeries<C>,
+    y: &DenseSeries<C>,
+    out: &mut [C],
+) {
+    C::dispatch(InnerProducts { space, d, x, y, out });
+}
+
+/// The arguments of [`add_inner_products`].
+struct InnerProducts<'a, C> {
+    space: &'a TaylorSpace,
+    d: u32,
+    x: &'a DenseSeries<'a, C>,
+    y: &'a DenseSeries<'a, C>,
+    out: &'a mut [C],
+}
+
+impl<C: Scalar> Kernel for InnerProducts<'_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        inner_products(self.space, self.d, self.x, self.y, self.out);
+    }
+}
+
+/// Adds the products as [`add_inner_products`] does, within a kernel.
+#[inline(always)]
+fn inner_products<C: Scalar>(
     space: &TaylorSpace,
     d: u32,
     x: &DenseSeries<C>,
@@ -97,6 +148,7 @@ pub(super) fn add_inner_products<C: Scalar>(
 }
 
 /// Adds x_i y_j + y_i x_j to `out`; one entry of the product table serves both products.
+#[inline(always)]
 fn add_mixed_degrees<C: Scalar>(
     table: &[u32],
     [xi, xj]: [&[C]; 2],
@@ -125,6 +177,7 @@ fn add_mixed_degrees<C: Scalar>(
 }
 
 /// Iterates over the rows of a product table with their non-zero factors.
+#[inline(always)]
 fn nonzero_rows<'a, C: Scalar>(
     table: &'a [u32],
     width: usize,
@@ -134,6 +187,7 @@ fn nonzero_rows<'a, C: Scalar>(
 }
 
 /// Adds x_i y_i to `out` for two blocks of one degree i.
+#[inline(always)]
 fn add_equal_degrees<C: Scalar>(table: &[u32], x: &[C], y: &[C], out: &mut [C]) {
     if x.is_empty() || y.is_empty() {
         return;
@@ -152,6 +206,7 @@ fn add_equal_degrees<C: Scalar>(table: &[u32], x: &[C], y: &[C], out: &mut [C]) 
 }
 
 /// Adds p y to `out` at the indices in `row`.
+#[inline(always)]
 fn add_row<C: Scalar>(row: &[u32], p: &C, y: &[C], out: &mut [C]) {
     for (at, y) in row.iter().zip(y) {
         out[*at as usize] += p.clone() * y.clone();
@@ -162,7 +217,25 @@ fn add_row<C: Scalar>(row: &[u32], p: &C, y: &[C], out: &mut [C]) {
 const UNROLLED: usize = 4;
 
 /// Adds p y + q x to `out` at the indices in `row`.
+#[inline(always)]
 fn add_two_rows<C: Scalar>(row: &[u32], [p, q]: [&C; 2], [y, x]: [&[C]; 2], out: &mut [C]) {
+    // Coefficients of several numbers fill vector instructions one by one.
+    if size_of::<C>() > 2 * size_of::<f64>() {
+        for ((at, y), x) in row.iter().zip(y).zip(x) {
+            out[*at as usize] += p.clone() * y.clone() + q.clone() * x.clone();
+        }
+    } else {
+        add_two_rows_unrolled(row, [p, q], [y, x], out);
+    }
+}
+
+/// Adds p y + q x to `out` like [`add_two_rows`], several products side by side.
+fn add_two_rows_unrolled<C: Scalar>(
+    row: &[u32],
+    [p, q]: [&C; 2],
+    [y, x]: [&[C]; 2],
+    out: &mut [C],
+) {
     let ((rows, row), (ys, y), (xs, x)) =
         (row.as_chunks::<UNROLLED>(), y.as_chunks::<UNROLLED>(), x.as_chunks::<UNROLLED>());
     for ((row, y), x) in rows.iter().zip(ys).zip(xs) {
@@ -177,6 +250,7 @@ fn add_two_rows<C: Scalar>(row: &[u32], [p, q]: [&C; 2], [y, x]: [&[C]; 2], out:
 }
 
 /// Adds k x to `out`.
+#[inline(always)]
 pub(super) fn add_scaled<C: Scalar>(out: &mut [C], k: &C, x: &[C]) {
     out.iter_mut().zip(x).for_each(|(out, x)| *out += k.clone() * x.clone());
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::monomial::Packing;
 use super::polynomial::TaylorPolynomial;
+use crate::dispatch::{Dispatch, Kernel};
 use crate::powers::Powers;
 use crate::scalar::Scalar;
 
@@ -163,31 +164,7 @@ impl<C: Scalar> PolynomialMap<C> {
             (self.variables, self.constants.len()),
             "a map needs one argument per variable and one value per component"
         );
-        // Powers of each variable, up to its highest exponent.
-        let mut next = 0;
-        for (x, highest) in at.iter().zip(&self.highest_exponents) {
-            for e in 1..=*highest {
-                ws.powers[next] = x.power(e, ws.powers.get(next.wrapping_sub(1)));
-                next += 1;
-            }
-        }
-        // Monomials, each after its parent.
-        ws.values[0] = T::one();
-        for (number, node) in self.nodes.iter().enumerate() {
-            let power = &ws.powers[node.power as usize];
-            ws.values[number + 1] = match node.parent {
-                0 => power.clone(),
-                parent => ws.values[parent as usize].clone() * power.clone(),
-            };
-        }
-        // Sums of coefficients times monomials.
-        let constants = self.constants.chunks(GROUP);
-        for ((out, constants), group) in out.chunks_mut(GROUP).zip(constants).zip(&self.groups) {
-            let sums = group.sums(&ws.values);
-            for ((out, constant), sum) in out.iter_mut().zip(constants).zip(sums) {
-                *out = T::from(constant.clone()) + sum;
-            }
-        }
+        T::dispatch(Evaluation { map: self, at, ws, out });
     }
 
     /// Evaluates the components at `at` (k values), like [`evaluate_into`](Self::evaluate_into).
@@ -195,6 +172,48 @@ impl<C: Scalar> PolynomialMap<C> {
         let mut out = vec![T::zero(); self.constants.len()];
         self.evaluate_into(at, &mut self.workspace(), &mut out);
         out
+    }
+}
+
+/// The arguments of [`PolynomialMap::evaluate_into`].
+struct Evaluation<'a, C, T> {
+    map: &'a PolynomialMap<C>,
+    at: &'a [T],
+    ws: &'a mut MapWorkspace<T>,
+    out: &'a mut [T],
+}
+
+impl<C: Scalar, T: Scalar + From<C> + Powers> Kernel for Evaluation<'_, C, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { map, at, ws, out } = self;
+        // Powers of each variable, up to its highest exponent.
+        let mut next = 0;
+        for (x, highest) in at.iter().zip(&map.highest_exponents) {
+            for e in 1..=*highest {
+                ws.powers[next] = x.power(e, ws.powers.get(next.wrapping_sub(1)));
+                next += 1;
+            }
+        }
+        // Monomials, each after its parent.
+        ws.values[0] = T::one();
+        for (number, node) in map.nodes.iter().enumerate() {
+            let power = &ws.powers[node.power as usize];
+            ws.values[number + 1] = match node.parent {
+                0 => power.clone(),
+                parent => ws.values[parent as usize].clone() * power.clone(),
+            };
+        }
+        // Sums of coefficients times monomials.
+        let constants = map.constants.chunks(GROUP);
+        for ((out, constants), group) in out.chunks_mut(GROUP).zip(constants).zip(&map.groups) {
+            let sums = group.sums(&ws.values);
+            for ((out, constant), sum) in out.iter_mut().zip(constants).zip(sums) {
+                *out = T::from(constant.clone()) + sum;
+            }
+        }
     }
 }
 
@@ -211,6 +230,7 @@ impl<C: Scalar> MonomialGroup<C> {
     }
 
     /// Returns Σ coefficient · monomial of each component.
+    #[inline(always)]
     fn sums<T: Scalar + From<C>>(&self, values: &[T]) -> [T; GROUP] {
         let add = |sums: &mut [T; GROUP], c: &[C; GROUP], monomial: u32| {
             let value = &values[monomial as usize];
@@ -236,6 +256,8 @@ impl<C: Scalar> MonomialGroup<C> {
 }
 
 impl<C: Scalar> Powers for TaylorPolynomial<C> {}
+
+impl<C: Scalar> Dispatch for TaylorPolynomial<C> {}
 
 /// Adds the missing parents of monomials, without coefficients.
 fn close_under_parents<C>(packing: Packing, monomials: &mut BTreeMap<u128, Vec<(u32, C)>>) {

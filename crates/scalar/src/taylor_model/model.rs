@@ -1,6 +1,7 @@
 //! The type [`TaylorModel`]: constructors, accessors and range.
 
 use super::bounds;
+use crate::dispatch::Dispatch;
 use crate::interval::closed::Interval;
 use crate::powers::Powers;
 use crate::taylor::polynomial::TaylorPolynomial;
@@ -136,3 +137,5 @@ impl From<Interval> for TaylorModel {
 }
 
 impl Powers for TaylorModel {}
+
+impl Dispatch for TaylorModel {}

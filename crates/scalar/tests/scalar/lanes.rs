@@ -1,7 +1,11 @@
 //! Tests of lanes against `f64`, to the last bit.
 
+use std::sync::Arc;
+
 use proptest::prelude::*;
-use reachtube_scalar::{Elementary, Lanes, Lanewise, Scalar};
+use reachtube_scalar::{
+    Elementary, Lanes, Lanewise, PolynomialMap, Scalar, TaylorPolynomial, TaylorSpace,
+};
 
 fn polynomial<S: Scalar>(x: S, y: S) -> S {
     let mut z = (x.clone() + S::from(0.1)) * y.clone() - x.clone() / y.clone();
@@ -34,6 +38,40 @@ proptest! {
             bits(a.atan2(&b).to_array()),
             bits(core::array::from_fn(|i| x[i].atan2(y[i])))
         );
+    }
+}
+
+/// Returns x / (2 + Σ aᵢ xᵢ) and its square, dense series without zeros.
+fn series<S: Scalar>(space: &Arc<TaylorSpace>, a: &[S]) -> [TaylorPolynomial<S>; 2] {
+    let sum = a.iter().enumerate().fold(TaylorPolynomial::from(2.0), |sum, (i, a)| {
+        sum + TaylorPolynomial::variable(space, i) * TaylorPolynomial::constant(a.clone())
+    });
+    let quotient = TaylorPolynomial::variable(space, 0) / sum;
+    [&quotient * &quotient, quotient]
+}
+
+/// Kernels over lanes may have other instructions than those over `f64`.
+#[test]
+fn polynomials_over_lanes_have_the_bits_of_those_over_f64() {
+    let space = TaylorSpace::new(4, 5).unwrap();
+    let a: Vec<Lanes<8>> = (0..4_u32)
+        .map(|i| Lanes::from_lanes(|k| 0.1 + 0.3 * (f64::from(i) + 1.7 * k as f64).sin()))
+        .collect();
+    let together = series(&space, &a);
+    let map = PolynomialMap::new(4, &series(&space, &[0.3, -0.2, 0.1, 0.7]));
+    let values = map.evaluate(&a);
+    for k in 0..8 {
+        let alone: Vec<f64> = a.iter().map(|a| a.lane(k)).collect();
+        for (together, alone) in together.iter().zip(&series(&space, &alone)) {
+            assert_eq!(together.terms().len(), alone.terms().len());
+            for (x, y) in together.terms().iter().zip(alone.terms()) {
+                assert_eq!(x.exponents, y.exponents);
+                assert_eq!(x.coefficient.lane(k).to_bits(), y.coefficient.to_bits());
+            }
+        }
+        for (value, alone) in values.iter().zip(map.evaluate(&alone)) {
+            assert_eq!(value.lane(k).to_bits(), alone.to_bits());
+        }
     }
 }
 

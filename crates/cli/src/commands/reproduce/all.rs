@@ -176,7 +176,7 @@ impl Sizes {
             campaign: CampaignOptions { motions: 4, runs: 3, poses: 100, friction: 1, ..campaign },
             table1: Table1Options { motions: 5, ..table1 },
             table2: Table2Options { notions: vec![Notion::Hull], ..table2 },
-            coverage: CoverageOptions { campaigns: 4, next: 100, ..coverage },
+            coverage: CoverageOptions { campaigns: 2, next: 100, ..coverage },
         }
     }
 }

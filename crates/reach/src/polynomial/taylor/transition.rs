@@ -37,8 +37,8 @@ pub(crate) fn transition(a: &IntervalMatrix) -> (IntervalMatrix, IntervalMatrix)
     (sum + &tail, change + tail)
 }
 
-/// Bounds the magnitudes of the terms from [`TERMS`] on, in sum, given those of the last term
-/// before and of A.
+/// Bounds the magnitudes of the terms from [`TERMS`] on, in sum, given the magnitudes of the last
+/// term before and of A.
 ///
 /// From the term q = [`TERMS_BY_ENTRY`] on, it is at most |T| |A| / q / (1 - |A| / (q + 1)) in the
 /// norm, with the term T before.

@@ -78,6 +78,25 @@ pub(super) fn bodies(robot: &Robot) -> Result<Vec<Body>, ExportError> {
     Ok((0..n).map(body).collect())
 }
 
+/// Checks that each link of a robot is a body by itself.
+///
+/// # Errors
+///
+/// As [`bodies`].
+pub(super) fn own_links(robot: &Robot) -> Result<(), ExportError> {
+    let joints = &robot.description().joints;
+    if joints.iter().any(|joint| joint.gravity_moments.is_some()) {
+        return Err(ExportError::SeparateGravity { robot: robot.name().into() });
+    }
+    match first_impossible(&robot.inertial_parameters()) {
+        None => Ok(()),
+        Some(link) => Err(ExportError::NotPhysical {
+            robot: robot.name().into(),
+            joint: joints[link].name.clone(),
+        }),
+    }
+}
+
 /// Returns the first of some links that no distribution of positive mass has.
 fn first_impossible(links: &[f64]) -> Option<usize> {
     links.chunks_exact(PER_LINK).position(|link| pseudo_inertia(link).cholesky().is_none())

@@ -6,20 +6,38 @@ use nalgebra::{Rotation3, UnitQuaternion};
 use reachtube_files::{MARK, TOOL};
 use reachtube_robot::{JointKind, LinkInertia, Placement, Robot};
 
-use super::attributes::{LEFT_OUT, attribute, friction};
+use super::attributes::{LEFT_OUT, SimulatedFriction, about_lines, attribute};
 use super::bodies::{Body, bodies};
 use crate::export::ExportError;
 use crate::export::text::{comment, harmless, number, numbers};
 
-/// Returns the robot as MJCF text.
+/// How viscous friction that is no line is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Damping {
+    /// v1 and v3 exactly, as MuJoCo reads them since version 4.
+    Polynomial,
+    /// The best line, which every reader takes.
+    Line,
+}
+
+/// What polynomial damping omits.
+const NO_EVEN_TERM: &str = "Viscous friction is v1 qd + v3 qd^3, which MuJoCo reads since version \
+4; v2, whose torque has one sign for both directions, is left out, as are the dependence on the \
+load and the Stribeck effect. Drake and Pinocchio read robot_linear.xml.";
+
+/// Returns the robot as MJCF text. Each joint has a motor, without which Drake drops its inertia.
 ///
 /// # Errors
 ///
 /// [`ExportError::SeparateGravity`] where gravity acts on masses of its own, and
 /// [`ExportError::NotPhysical`] where no bodies have its torques: MuJoCo refuses both.
-pub fn mjcf(robot: &Robot) -> Result<String, ExportError> {
+pub fn mjcf(robot: &Robot, damping: Damping) -> Result<String, ExportError> {
     let bodies = bodies(robot)?;
-    let lines = [format!("{MARK} ({TOOL}): {}.", harmless(robot.name())), LEFT_OUT.into()];
+    let about = match damping {
+        Damping::Polynomial if is_curved(robot) => vec![NO_EVEN_TERM.into()],
+        _ => [vec![LEFT_OUT.into()], about_lines(robot)].concat(),
+    };
+    let lines = [vec![format!("{MARK} ({TOOL}): {}.", harmless(robot.name()))], about].concat();
     let mut text = format!(
         "<!--\n{}-->\n<mujoco model=\"{}\">\n  <compiler angle=\"radian\" autolimits=\"true\"/>\n  \
          <option gravity=\"{}\"/>\n  <worldbody>\n",
@@ -28,13 +46,22 @@ pub fn mjcf(robot: &Robot) -> Result<String, ExportError> {
         numbers(robot.gravity_acceleration(), " "),
     );
     for (j, body) in bodies.iter().enumerate() {
-        write_body(&mut text, robot, j, body);
+        write_body(&mut text, robot, (j, body), damping);
     }
     for j in (0..bodies.len()).rev() {
         let _ = writeln!(text, "{}</body>", indent(j));
     }
-    text += "  </worldbody>\n</mujoco>\n";
-    Ok(text)
+    text += "  </worldbody>\n  <actuator>\n";
+    for joint in robot.joints() {
+        let name = attribute(&joint.name);
+        let _ = writeln!(text, "    <motor name=\"{name}\" joint=\"{name}\"/>");
+    }
+    Ok(text + "  </actuator>\n</mujoco>\n")
+}
+
+/// Tells whether a joint's viscous friction is no line.
+pub(super) fn is_curved(robot: &Robot) -> bool {
+    (0..robot.joint_count()).any(|j| SimulatedFriction::new(robot, j).is_curved())
 }
 
 fn indent(j: usize) -> String {
@@ -42,9 +69,14 @@ fn indent(j: usize) -> String {
 }
 
 /// Writes the start of body `j`, in which the next one is nested.
-fn write_body(text: &mut String, robot: &Robot, j: usize, body: &Body) {
+fn write_body(text: &mut String, robot: &Robot, (j, body): (usize, &Body), damping: Damping) {
     let (joint, space) = (&robot.joints()[j], indent(j));
-    let [damping, loss] = friction(robot, j);
+    let friction = SimulatedFriction::new(robot, j);
+    let damping = match (damping, friction.viscous) {
+        (Damping::Polynomial, [v1, _, v3]) if v3 != 0.0 => numbers([v1, 0.0, v3], " "),
+        (Damping::Polynomial, [v1, ..]) => number(v1.max(0.0)),
+        (Damping::Line, _) => number(friction.line()),
+    };
     let kind = match joint.kind {
         JointKind::Revolute => "hinge",
         JointKind::Prismatic => "slide",
@@ -59,8 +91,8 @@ fn write_body(text: &mut String, robot: &Robot, j: usize, body: &Body) {
         numbers(body.axis, " "),
         numbers(joint.position_limits, " "),
         number(body.armature),
-        number(damping),
-        number(loss),
+        damping,
+        number(friction.loss),
         inertial(&body.inertia, &space),
     );
 }

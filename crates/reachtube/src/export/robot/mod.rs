@@ -1,9 +1,10 @@
 //! An identified robot as simulators read it.
 //!
 //! [`mjcf`] is for MuJoCo and [`urdf`] for everything else. Both have the robot's inverse dynamics.
-//! Their friction is the linear viscous coefficient and one Coulomb magnitude at no load, which
-//! is all that their formats express. Links that cannot exist, as links from base parameters, are
-//! replaced by bodies with the same torques, or refused where none were found.
+//! Their friction is one viscous coefficient, the best line over the recorded velocities, and one
+//! Coulomb magnitude at no load; MuJoCo has cubic friction exactly. Links that cannot exist, as
+//! links from base parameters, are replaced by bodies with the same torques, or refused where none
+//! were found.
 
 mod attributes;
 mod bodies;
@@ -11,11 +12,12 @@ mod mjcf;
 mod urdf;
 
 use std::fmt::Write;
+use std::path::Path;
 
-use reachtube_robot::Robot;
+use reachtube_robot::{Lock, Robot};
 
-pub use mjcf::mjcf;
-pub use urdf::{UrdfFiles, urdf};
+pub use mjcf::{Damping, mjcf};
+pub use urdf::{UrdfFiles, updated_urdf, urdf};
 
 use super::text::numbers;
 use super::{ExportError, ExportFile};
@@ -24,16 +26,21 @@ use crate::export::draws::Draws;
 /// Number of states at which [`check_torques`] has torques.
 const CHECK_STATES: usize = 1000;
 
-/// Returns `robot.xml` for MuJoCo and `check_torques.csv`.
+/// Returns `robot.xml` for MuJoCo and `check_torques.csv`; where damping is a polynomial, also
+/// `robot_linear.xml` with lines, since Drake and Pinocchio read one number per joint.
 ///
 /// # Errors
 ///
 /// As [`mjcf`].
 pub fn mjcf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
-    Ok(vec![
-        ExportFile::new("robot.xml", mjcf(robot)?),
+    let mut files = vec![
+        ExportFile::new("robot.xml", mjcf(robot, Damping::Polynomial)?),
         ExportFile::new("check_torques.csv", check_torques(robot)),
-    ])
+    ];
+    if mjcf::is_curved(robot) {
+        files.push(ExportFile::new("robot_linear.xml", mjcf(robot, Damping::Line)?));
+    }
+    Ok(files)
 }
 
 /// Returns `robot.urdf`, `robot.toml` with what URDF cannot say, and `check_torques.csv`.
@@ -42,12 +49,29 @@ pub fn mjcf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
 ///
 /// As [`urdf`].
 pub fn urdf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
-    let UrdfFiles { urdf, companion } = urdf(robot)?;
-    Ok(vec![
+    Ok(of_urdf(robot, urdf(robot)?))
+}
+
+/// Returns the files of [`urdf_files`], where `robot.urdf` is the URDF at `path` with the inertia
+/// and friction of the robot.
+///
+/// # Errors
+///
+/// As [`updated_urdf`].
+pub fn updated_urdf_files(
+    robot: &Robot,
+    path: &Path,
+    locks: &[Lock],
+) -> Result<Vec<ExportFile>, ExportError> {
+    Ok(of_urdf(robot, updated_urdf(robot, path, locks)?))
+}
+
+fn of_urdf(robot: &Robot, UrdfFiles { urdf, companion }: UrdfFiles) -> Vec<ExportFile> {
+    vec![
         ExportFile::new("robot.urdf", urdf),
         ExportFile::new("robot.toml", companion),
         ExportFile::new("check_torques.csv", check_torques(robot)),
-    ])
+    ]
 }
 
 /// Returns a table of random states with the torques of the robot without friction, to check a

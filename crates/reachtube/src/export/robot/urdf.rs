@@ -1,18 +1,26 @@
 //! URDF.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use reachtube_files::{MARK, TOOL};
-use reachtube_robot::{JointKind, Placement, Robot, Urdf, UrdfOptions};
+use reachtube_robot::{JointKind, Lock, Placement, Robot, Urdf, UrdfOptions};
 
-use super::attributes::{LEFT_OUT, attribute, friction};
-use super::bodies::{Body, bodies};
+use super::attributes::{LEFT_OUT, SimulatedFriction, about_lines, attribute};
+use super::bodies::{Body, bodies, own_links};
 use crate::export::ExportError;
+use crate::export::draws::Draws;
 use crate::export::text::{comment, harmless, number, numbers};
 
 /// Velocity limit \[rad/s; m/s\] and effort limit \[N m; N\] where the robot has none, because URDF
 /// asks for numbers.
 const NO_LIMIT: f64 = 1000.0;
+
+/// Number of random states at which a URDF that was updated must have the robot's torques.
+const COMPARED: usize = 50;
+
+/// Largest difference of torques, relative to the largest, that rounding explains.
+const SAME_TORQUES: f64 = 1e-9;
 
 /// A robot as URDF, and what URDF cannot say.
 #[derive(Debug, Clone)]
@@ -45,19 +53,69 @@ pub fn urdf(robot: &Robot) -> Result<UrdfFiles, ExportError> {
         (Ok(read), Ok(driven)) => read.companion(&driven),
         _ => return Err(ExportError::Unreadable { robot: robot.name().into() }),
     };
-    let mark =
-        format!("# {MARK} ({TOOL}): what robot.urdf cannot say of {}.\n", harmless(robot.name()));
-    Ok(UrdfFiles { urdf, companion: mark + &companion })
+    Ok(UrdfFiles { urdf, companion: mark(robot) + &companion })
+}
+
+/// Writes the inertia and friction of a robot into a URDF file; all other text stays.
+///
+/// # Errors
+///
+/// As [`urdf`]; [`ExportError::Robot`] for a URDF that cannot be read or has other joints, and
+/// [`ExportError::OtherGeometry`] where its links lie elsewhere.
+pub fn updated_urdf(robot: &Robot, path: &Path, locks: &[Lock]) -> Result<UrdfFiles, ExportError> {
+    own_links(robot)?;
+    let options = UrdfOptions { locks: locks.to_vec(), any_inertia: true, ..Default::default() };
+    let old = Urdf::load(path, &options)?;
+    let urdf = old.updated(&with_lines(robot)?)?;
+    let companion = old.companion(robot);
+    let origin = path.display().to_string();
+    let read = Urdf::parse_with(&urdf, &origin, &companion, &options)?.into_robot();
+    let error = largest_difference(robot, &read);
+    if error > SAME_TORQUES {
+        return Err(ExportError::OtherGeometry { robot: robot.name().into(), path: origin, error });
+    }
+    Ok(UrdfFiles { urdf, companion: mark(robot) + &companion })
+}
+
+/// Returns the robot with the best line as its viscous friction, which is all that URDF expresses.
+fn with_lines(robot: &Robot) -> Result<Robot, ExportError> {
+    let mut description = robot.description().clone();
+    for (j, joint) in description.joints.iter_mut().enumerate() {
+        joint.friction.viscous = [SimulatedFriction::new(robot, j).line(), 0.0, 0.0];
+    }
+    Ok(Robot::from_description(&description)?)
+}
+
+/// Returns the largest difference of the torques of two robots at random states, relative to the
+/// largest torque.
+fn largest_difference(robot: &Robot, other: &Robot) -> f64 {
+    let n = robot.joint_count();
+    let mut draws = Draws::seeded(4);
+    let mut draw = |radius: f64| draws.vector(n, radius);
+    let (mut worst, mut largest) = (0.0_f64, 1.0_f64);
+    for _ in 0..COMPARED {
+        let (q, qd, qdd) = (draw(3.0), draw(2.0), draw(5.0));
+        let torques = robot.inverse_dynamics(&q, &qd, &qdd);
+        worst = worst.max((other.inverse_dynamics(&q, &qd, &qdd) - &torques).amax());
+        largest = largest.max(torques.amax());
+    }
+    worst / largest
+}
+
+/// Returns the first line of a companion.
+fn mark(robot: &Robot) -> String {
+    format!("# {MARK} ({TOOL}): what robot.urdf cannot say of {}.\n", harmless(robot.name()))
 }
 
 fn text(robot: &Robot, bodies: &[Body]) -> String {
-    let lines = [
+    let own = [
         format!("{MARK} ({TOOL}): {}.", harmless(robot.name())),
         LEFT_OUT.into(),
         "URDF has no motor inertia and no gravity: a simulator needs the values of robot.toml \
          (armature, gravity)."
             .into(),
     ];
+    let lines = [own.to_vec(), about_lines(robot)].concat();
     let mut text = format!(
         "<?xml version=\"1.0\"?>\n<!--\n{}-->\n<robot name=\"{}\">\n  <link name=\"base\"/>\n",
         comment(" ", &lines).replace("--", "- -"),
@@ -71,7 +129,7 @@ fn text(robot: &Robot, bodies: &[Body]) -> String {
 
 fn write_joint(text: &mut String, robot: &Robot, j: usize, body: &Body) {
     let joint = &robot.joints()[j];
-    let [damping, loss] = friction(robot, j);
+    let friction = SimulatedFriction::new(robot, j);
     let kind = match joint.kind {
         JointKind::Revolute => "revolute",
         JointKind::Prismatic => "prismatic",
@@ -95,8 +153,8 @@ fn write_joint(text: &mut String, robot: &Robot, j: usize, body: &Body) {
         numbers(body.axis, " "),
         number(joint.velocity_limit.unwrap_or(NO_LIMIT)),
         number(NO_LIMIT),
-        number(damping),
-        number(loss),
+        number(friction.line()),
+        number(friction.loss),
         j + 1,
         numbers(com, " "),
         number(mass),

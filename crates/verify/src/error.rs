@@ -1,0 +1,71 @@
+//! The errors of this crate.
+
+use thiserror::Error;
+
+/// The result of a fallible function of this crate.
+pub type Result<T> = core::result::Result<T, Error>;
+
+/// Returns the line, from 1, of a place in a text.
+pub(crate) fn line_of(text: &str, at: usize) -> usize {
+    text[..at].matches('\n').count() + 1
+}
+
+/// Why a question about a robot's links has no answer.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A text is not TOML, or has keys that are not known.
+    #[error(
+        "{origin}: {}\ncorrect the text; docs/verify.md describes the format",
+        message.trim_end()
+    )]
+    Syntax {
+        /// The file that the text came from.
+        origin: String,
+        /// The parser's message, with line and column.
+        message: String,
+    },
+    /// A value is outside its range.
+    #[error("{origin}:{line}: {place}{problem}; {remedy}")]
+    Invalid {
+        /// The file that the value came from.
+        origin: String,
+        /// The line, from 1.
+        line: usize,
+        /// What the value belongs to, as "capsule 2: ".
+        place: String,
+        /// The value and the limit that it violates.
+        problem: String,
+        /// The remedy.
+        remedy: String,
+    },
+    /// A link of a URDF has a collision shape from which no capsule is made.
+    #[error(
+        "link `{link}` has the collision mesh `{mesh}`, from which no capsule is made; give the \
+         link's capsules in a TOML file, or describe its collision by boxes, cylinders or spheres"
+    )]
+    Mesh {
+        /// The link.
+        link: String,
+        /// The file of the mesh.
+        mesh: String,
+    },
+    /// No capsules are known for a robot.
+    #[error(
+        "no capsules are known for the links of robot `{robot}`; give a TOML file with \
+         [[capsule]] tables, or the URDF with collision shapes"
+    )]
+    NoCapsules {
+        /// The robot.
+        robot: String,
+    },
+    /// A file could not be read.
+    #[error(transparent)]
+    File(#[from] reachtube_files::Error),
+    /// A robot could not be read.
+    #[error(transparent)]
+    Robot(#[from] reachtube_robot::RobotError),
+    /// The motion of a model could not be computed.
+    #[error(transparent)]
+    Conform(#[from] reachtube_conform::Error),
+}

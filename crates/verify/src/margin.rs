@@ -1,0 +1,112 @@
+//! How far a model puts a link from where the nominal motion does.
+
+use rayon::prelude::*;
+use reachtube_conform::SuiteReach;
+use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::{add_up, mul_up, sub_up};
+use serde::Serialize;
+
+use crate::body::body::{Body, Workspace};
+
+/// The proved margin of a link: grown by it, the link's capsules on the nominal motion contain the
+/// link's capsules on every motion of the model at the same time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Margin {
+    /// Index of the joint that moves the link, from 0.
+    pub joint: usize,
+    /// The margin \[m\], rounded up.
+    pub distance: f64,
+    /// Start of the step in which it is the largest, s.
+    pub time: f64,
+}
+
+impl Body {
+    /// Returns the margin of each link that has a capsule, over all steps of reachable sets, in the
+    /// order of the joints. Between two samples the nominal motion is straight in the joints'
+    /// positions. Sensor noise is not part of it, as it moves no link.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding, for every time of each step. The deviation from the straight
+    /// motion stays within h/4 times the width of the tube in the velocity of the line between its
+    /// values at the two samples.
+    ///
+    /// # Panics
+    ///
+    /// Panics when the reachable sets are of another number of joints.
+    #[must_use]
+    pub fn margins(&self, reach: &SuiteReach) -> Vec<Margin> {
+        assert_eq!(reach.dimension, 2 * self.joint_count(), "the sets are of another robot");
+        let of_step = |workspace: &mut Workspace, k: usize| -> Vec<Margin> {
+            let margin = |(joint, distance)| Margin { joint, distance, time: reach.times[k] };
+            self.distances(workspace, reach, k).into_iter().map(margin).collect()
+        };
+        let of_steps = (0..reach.tube.len()).into_par_iter().map_init(Workspace::default, of_step);
+        let of_capsules = of_steps.reduce_with(larger).unwrap_or_default();
+        let mut margins: Vec<Margin> = Vec::new();
+        for margin in of_capsules {
+            match margins.iter_mut().find(|known| known.joint == margin.joint) {
+                Some(known) if known.distance >= margin.distance => {}
+                Some(known) => *known = margin,
+                None => margins.push(margin),
+            }
+        }
+        margins.sort_by_key(|margin| margin.joint);
+        margins
+    }
+
+    /// Bounds the distance of each capsule from the nominal one over step k, with the joint that
+    /// moves it.
+    fn distances(
+        &self,
+        workspace: &mut Workspace,
+        reach: &SuiteReach,
+        k: usize,
+    ) -> Vec<(usize, f64)> {
+        let n = self.joint_count();
+        let shift: Vec<Interval> = (0..n).map(|i| deviation(reach, k, i)).collect();
+        let sizes: Vec<f64> = shift.iter().map(|e| e.mag()).collect();
+        let nominal = |i: usize| {
+            let [here, next] = [k, k + 1].map(|k| reach.nominal[k * 2 * n + i]);
+            Interval::point(here).hull(Interval::point(next))
+        };
+        let moved: Vec<f64> = (0..n).map(|i| nominal(i).rad()).collect();
+        let Workspace { posture, points: [point, _], q, radii } = workspace;
+        q.clear();
+        q.extend((0..n).map(|i| nominal(i).mid()));
+        radii.clear();
+        radii.extend(moved.iter().zip(&sizes).map(|(a, b)| add_up(*a, *b)));
+        self.chain.pose(q, posture);
+        let mut of_end = |joint: usize, end| {
+            point.at(&self.chain, posture, (joint, end), radii);
+            point.distance(&moved, &shift, &sizes)
+        };
+        let distances = self.ends().map(|(capsule, [from, to])| {
+            let joint = capsule.joint;
+            (joint, of_end(joint, from).max(of_end(joint, to)))
+        });
+        distances.collect()
+    }
+}
+
+/// Returns the larger margin of each capsule; of equal ones the earlier.
+fn larger(left: Vec<Margin>, right: Vec<Margin>) -> Vec<Margin> {
+    let larger = |(a, b): (Margin, Margin)| {
+        let is_later = b.distance > a.distance || b.distance == a.distance && b.time < a.time;
+        if is_later { b } else { a }
+    };
+    left.into_iter().zip(right).map(larger).collect()
+}
+
+/// Encloses the deviation of position i from the straight nominal motion at every time of step k.
+fn deviation(reach: &SuiteReach, k: usize, i: usize) -> Interval {
+    let (n, states) = (reach.dimension / 2, reach.dimension);
+    let at = |k: usize| {
+        let index = k * states + i;
+        let (lower, upper) = (reach.lower[index], reach.upper[index]);
+        Interval::point(lower).hull(Interval::point(upper)) - reach.nominal[index]
+    };
+    let duration = sub_up(reach.times[k + 1].next_up(), reach.times[k].next_down());
+    let bulge = mul_up(0.25, mul_up(duration, reach.tube.bounds(k)[n + i].width()));
+    at(k).hull(at(k + 1)) + Interval::centred(0.0, bulge)
+}

@@ -1,0 +1,146 @@
+//! Verdicts as text.
+
+use reachtube_conform::result::Table;
+use reachtube_scalar::number::{at_least, outward};
+
+use crate::body::body::Body;
+use crate::scene::scenario::Scene;
+use crate::verdict::decide::Advice;
+use crate::verdict::verification::{Answer, Verification};
+
+/// Returns the verdicts as text: the worst first, a table of the motions, the margins, and what to
+/// do next.
+#[must_use]
+pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> String {
+    let mut order: Vec<&Verification> = all.iter().collect();
+    let smallest = |v: &Verification| v.clearances.first().map_or(f64::INFINITY, |c| c.distance);
+    order.sort_by(|a, b| b.answer.cmp(&a.answer).then(smallest(a).total_cmp(&smallest(b))));
+    let mut lines: Vec<String> =
+        order.first().map(|worst| verdict(worst, scene)).into_iter().collect();
+    lines.push(String::new());
+    let header = ["motion", "answer", "closest link", "obstacle", "proved distance [m]", "at [s]"];
+    lines.push(Table::new(header, order.iter().map(|v| row(v)).collect()).to_string());
+    lines.push(margins(all, body));
+    let advice: Vec<String> = order.iter().filter_map(|v| next(v)).collect();
+    lines.extend(advice.into_iter().take(3));
+    lines.join("\n").trim_end().to_string() + "\n"
+}
+
+/// Returns the verdict about the worst motion as a sentence.
+fn verdict(worst: &Verification, scene: &Scene) -> String {
+    let keep = match scene.clearance {
+        0.0 => String::new(),
+        clearance => format!(" more than {clearance} m"),
+    };
+    let case = &worst.case;
+    match (worst.answer, worst.clearances.first(), &worst.closest) {
+        (Answer::Unsafe, _, Some(found)) => {
+            let how = match found.distance {
+                overlap if overlap < 0.0 => {
+                    format!("overlaps `{}` by {:.4} m", found.obstacle, -overlap)
+                }
+                near => format!("is {near:.4} m from `{}`", found.obstacle),
+            };
+            format!(
+                "unsafe: on a motion of the model, the link of {} {how} at {:.3} s ({case}).",
+                found.link, found.time
+            )
+        }
+        (Answer::Safe, Some(pair), _) => format!(
+            "safe: on every motion of the model each link stays{keep} clear; the smallest proved \
+             distance is {} m, of the link of {} from `{}` at {:.3} s ({case}).",
+            lower(pair.distance),
+            pair.link,
+            pair.obstacle,
+            pair.time
+        ),
+        (Answer::Safe, None, _) => "safe: no obstacle concerns a link.".into(),
+        (_, Some(pair), found) => format!(
+            "undecided: no distance{keep} is proved between the link of {} and `{}` at {:.3} s \
+             ({case}); the closest motion found stays {} m away.",
+            pair.link,
+            pair.obstacle,
+            pair.time,
+            found.as_ref().map_or("?".into(), |found| format!("{:.4}", found.distance)),
+        ),
+        (_, None, _) => format!("undecided: the reachable set ends before the motion ({case})."),
+    }
+}
+
+fn row(v: &Verification) -> Vec<String> {
+    let answer = match v.answer {
+        Answer::Safe => "safe",
+        Answer::Undecided => "undecided",
+        Answer::Unsafe => "unsafe",
+    };
+    let mut row = vec![v.case.clone(), answer.into()];
+    match v.clearances.first() {
+        None => row.extend(vec![String::new(); 4]),
+        Some(pair) => row.extend([
+            pair.link.clone(),
+            pair.obstacle.clone(),
+            if pair.distance > 0.0 { lower(pair.distance) } else { "none".into() },
+            format!("{:.3}", pair.time),
+        ]),
+    }
+    row
+}
+
+/// Returns the largest margin of each link as a table.
+fn margins(all: &[Verification], body: &Body) -> String {
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut links: Vec<usize> = body.capsules().iter().map(|capsule| capsule.joint).collect();
+    links.sort_unstable();
+    links.dedup();
+    for joint in links {
+        let of_link = all.iter().flat_map(|v| v.margins.iter().map(move |m| (v, m)));
+        let of_link = of_link.filter(|(_, margin)| margin.joint == joint);
+        let Some((v, margin)) = of_link.max_by(|a, b| a.1.distance.total_cmp(&b.1.distance)) else {
+            continue;
+        };
+        let time = format!("{:.3}", margin.time);
+        rows.push(vec![
+            body.joint_name(joint).into(),
+            at_least(margin.distance),
+            v.case.clone(),
+            time,
+        ]);
+    }
+    Table {
+        title: "margins: how far a link can be from its nominal motion".into(),
+        ..Table::new(["link of", "margin [m]", "motion", "at [s]"], rows)
+    }
+    .to_string()
+}
+
+/// Returns what would decide an open question, as a sentence.
+fn next(v: &Verification) -> Option<String> {
+    let case = &v.case;
+    Some(match v.advice? {
+        Advice::Refine(parts) => {
+            format!("{case}: `refine = {parts}` in the scenario proves that all links stay clear.")
+        }
+        Advice::SmallerSets(factor) => format!(
+            "{case}: with X0 and U {factor:.2} times as wide, all links would be proved to stay \
+             clear; a better model or cleaner recordings give smaller sets."
+        ),
+        Advice::Nominal => format!(
+            "{case}: without any uncertainty no distance is proved either; move the obstacle or \
+             the motion."
+        ),
+        Advice::SetLost => format!(
+            "{case}: the reachable set ends before the motion; `until` in the scenario uses only \
+             the samples before."
+        ),
+        Advice::NotTried => format!(
+            "{case}: smaller sets may decide; they were not tried, as each takes long to compute \
+             for a model that is not linear."
+        ),
+    })
+}
+
+/// Formats a proved distance with four decimals, rounded down.
+fn lower(distance: f64) -> String {
+    let [low, _] = outward([distance, distance], 4);
+    low
+}

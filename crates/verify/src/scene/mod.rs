@@ -1,0 +1,6 @@
+//! What a robot must stay clear of.
+
+pub(crate) mod direction;
+pub(crate) mod obstacle;
+pub(crate) mod scenario;
+pub(crate) mod separation;

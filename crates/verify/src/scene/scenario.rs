@@ -1,0 +1,273 @@
+//! Scenarios as TOML.
+
+use std::path::{Path, PathBuf};
+
+use nalgebra::Rotation3;
+use reachtube_robot::Robot;
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::error::{Error, Result, line_of};
+use crate::scene::obstacle::{Obstacle, Solid};
+
+/// The speed at which a person approaches, m/s (ISO 13855, walking).
+const WALKING: f64 = 1.6;
+
+/// Number of parts into which a step is divided, at most, where its enclosure comes too close.
+const REFINE: u32 = 8;
+
+/// A question: a model, recorded motions, and what the robot must stay clear of.
+#[derive(Debug)]
+pub struct Scenario {
+    /// The model file.
+    pub model: PathBuf,
+    /// The recordings whose inputs the model moves under.
+    pub data: PathBuf,
+    /// The suites to use; all if empty.
+    pub suites: Vec<String>,
+    /// The time after which samples are not used, s.
+    pub until: Option<f64>,
+    /// What `capsules` names: a TOML or URDF file; `None` for the capsules that are known for the
+    /// robot.
+    pub capsules: Option<PathBuf>,
+    text: String,
+    origin: String,
+    file: File,
+}
+
+/// What a robot must stay clear of, and how hard to try to prove it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The obstacles, at least one.
+    pub obstacles: Vec<Obstacle>,
+    /// The distance to keep, m.
+    pub clearance: f64,
+    /// Number of parts into which a step is divided, at most, where its enclosure comes too close.
+    pub refine: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    model: PathBuf,
+    data: PathBuf,
+    #[serde(default)]
+    suites: Vec<String>,
+    until: Option<Spanned<f64>>,
+    capsules: Option<PathBuf>,
+    clearance: Option<Spanned<f64>>,
+    refine: Option<Spanned<u32>>,
+    #[serde(default)]
+    obstacle: Vec<Spanned<ObstacleTable>>,
+    #[serde(default)]
+    person: Vec<Spanned<ObstacleTable>>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct ObstacleTable {
+    name: String,
+    half_space: Option<HalfSpaceTable>,
+    #[serde(rename = "box")]
+    cuboid: Option<BoxTable>,
+    capsule: Option<CapsuleTable>,
+    sphere: Option<SphereTable>,
+    speed: Option<f64>,
+    links: Option<Vec<String>>,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HalfSpaceTable {
+    normal: [f64; 3],
+    offset: f64,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BoxTable {
+    centre: [f64; 3],
+    size: [f64; 3],
+    #[serde(default)]
+    rpy: [f64; 3],
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CapsuleTable {
+    from: [f64; 3],
+    to: [f64; 3],
+    radius: f64,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SphereTable {
+    centre: [f64; 3],
+    radius: f64,
+}
+
+impl Scenario {
+    /// Reads a scenario; its paths are relative to its folder.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read; [`Error::Syntax`] and [`Error::Invalid`], with the line.
+    pub fn open(path: &Path) -> Result<Self> {
+        let text =
+            reachtube_files::read_text(path, "write a scenario, as docs/verify.md describes")?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::parse(text, &path.display().to_string(), folder)
+    }
+
+    fn parse(text: String, origin: &str, folder: &Path) -> Result<Self> {
+        let file: File = toml::from_str(&text)
+            .map_err(|e| Error::Syntax { origin: origin.into(), message: e.to_string() })?;
+        let capsules = file.capsules.as_ref().map(|path| folder.join(path));
+        let until = file.until.as_ref().map(|until| *until.get_ref());
+        Ok(Self {
+            model: folder.join(&file.model),
+            data: folder.join(&file.data),
+            suites: file.suites.clone(),
+            until,
+            capsules,
+            text,
+            origin: origin.into(),
+            file,
+        })
+    }
+
+    /// Returns the scene for a robot, whose joints name its links.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Invalid`], with the line.
+    pub fn scene(&self, robot: &Robot) -> Result<Scene> {
+        let File { obstacle, person, clearance, refine, until, .. } = &self.file;
+        if obstacle.is_empty() && person.is_empty() {
+            let remedy = "give at least one [[obstacle]] or [[person]]";
+            return Err(self.invalid(0, "", "there is nothing to stay clear of", remedy));
+        }
+        for number in [until, clearance].into_iter().flatten() {
+            if !(*number.get_ref() >= 0.0 && number.get_ref().is_finite()) {
+                let (at, remedy) = (number.span().start, "give a finite number, not below 0");
+                return Err(self.invalid(
+                    at,
+                    "",
+                    &format!("{} is no number here", number.get_ref()),
+                    remedy,
+                ));
+            }
+        }
+        let parts = refine.as_ref().map_or(REFINE, |refine| *refine.get_ref());
+        if !(1..=4096).contains(&parts) {
+            let at = refine.as_ref().map_or(0, |refine| refine.span().start);
+            return Err(self.invalid(at, "", &format!("refine = {parts}"), "give 1 to 4096"));
+        }
+        let still = obstacle.iter().map(|table| self.obstacle(table, 0.0, robot));
+        let people = person.iter().map(|table| self.obstacle(table, WALKING, robot));
+        let obstacles: Vec<Obstacle> = still.chain(people).collect::<Result<_>>()?;
+        for (index, table) in obstacle.iter().chain(person).enumerate() {
+            if obstacles[..index].iter().any(|known| known.name == obstacles[index].name) {
+                let place = format!("obstacle `{}`: ", obstacles[index].name);
+                let remedy = "give each its own name";
+                return Err(self.invalid(
+                    table.span().start,
+                    &place,
+                    "the name occurs twice",
+                    remedy,
+                ));
+            }
+        }
+        let clearance = clearance.as_ref().map_or(0.0, |clearance| *clearance.get_ref());
+        Ok(Scene { obstacles, clearance, refine: parts })
+    }
+
+    fn obstacle(
+        &self,
+        table: &Spanned<ObstacleTable>,
+        speed: f64,
+        robot: &Robot,
+    ) -> Result<Obstacle> {
+        let (at, table) = (table.span().start, table.get_ref());
+        let place = format!("obstacle `{}`: ", table.name);
+        let invalid = |problem: &str, remedy: &str| self.invalid(at, &place, problem, remedy);
+        let solid = table.solid().map_err(|(problem, remedy)| invalid(&problem, remedy))?;
+        let speed = table.speed.unwrap_or(speed);
+        if !(speed >= 0.0 && speed.is_finite()) {
+            return Err(invalid(
+                &format!("speed = {speed}"),
+                "give a finite number of m/s, not below 0",
+            ));
+        }
+        let joint = |name: &String| {
+            let found = robot.joints().iter().position(|joint| joint.name == *name);
+            found.ok_or_else(|| {
+                let names: Vec<_> =
+                    robot.joints().iter().map(|j| format!("`{}`", j.name)).collect();
+                let remedy =
+                    format!("a link is named by the joint that moves it: {}", names.join(", "));
+                invalid(&format!("no joint is named `{name}`"), &remedy)
+            })
+        };
+        let joints = table.links.as_ref().map(|links| links.iter().map(joint).collect());
+        Ok(Obstacle { name: table.name.clone(), solid, speed, joints: joints.transpose()? })
+    }
+
+    fn invalid(&self, at: usize, place: &str, problem: &str, remedy: &str) -> Error {
+        Error::Invalid {
+            origin: self.origin.clone(),
+            line: line_of(&self.text, at),
+            place: place.into(),
+            problem: problem.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
+impl ObstacleTable {
+    /// Returns the solid, or the problem and its remedy.
+    fn solid(&self) -> core::result::Result<Solid, (String, &'static str)> {
+        let Self { half_space, cuboid, capsule, sphere, .. } = self;
+        let solid = match (half_space, cuboid, capsule, sphere) {
+            (Some(HalfSpaceTable { normal, offset }), None, None, None) => {
+                Solid::HalfSpace { normal: *normal, offset: *offset }
+            }
+            (None, Some(table), None, None) => table.solid(),
+            (None, None, Some(CapsuleTable { from, to, radius }), None) => {
+                Solid::Capsule { from: *from, to: *to, radius: *radius }
+            }
+            (None, None, None, Some(SphereTable { centre, radius })) => {
+                Solid::Capsule { from: *centre, to: *centre, radius: *radius }
+            }
+            _ => {
+                let remedy = "give exactly one of half-space, box, capsule and sphere";
+                return Err(("it has no shape, or several".into(), remedy));
+            }
+        };
+        let (sizes, numbers): (Vec<f64>, Vec<f64>) = match solid {
+            Solid::HalfSpace { normal, offset } => {
+                (vec![normal.iter().map(|x| x * x).sum()], vec![offset])
+            }
+            Solid::Box { centre, half, .. } => (half.to_vec(), centre.to_vec()),
+            Solid::Capsule { from, to, radius } => (vec![radius], [from, to].concat()),
+        };
+        if !sizes.iter().all(|size| *size > 0.0) {
+            return Err(("a length is not above 0".into(), "give lengths above 0, in m"));
+        }
+        if !sizes.iter().chain(&numbers).all(|x| x.is_finite()) {
+            return Err(("a number is not finite".into(), "give finite numbers, in m"));
+        }
+        Ok(solid)
+    }
+}
+
+impl BoxTable {
+    fn solid(&self) -> Solid {
+        let [roll, pitch, yaw] = self.rpy;
+        let rotation = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();
+        let axis = |i: usize| rotation.column(i).into_owned().into();
+        let axes = [axis(0), axis(1), axis(2)];
+        Solid::Box { centre: self.centre, axes, half: self.size.map(|side| 0.5 * side) }
+    }
+}

@@ -1,0 +1,8 @@
+//! Whether the links stay clear of the obstacles.
+
+pub(crate) mod clearance;
+pub(crate) mod decide;
+mod gradient;
+mod part_of_step;
+pub(crate) mod verification;
+pub(crate) mod witness;

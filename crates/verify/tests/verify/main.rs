@@ -1,0 +1,9 @@
+//! Tests of the enclosures, by sampling and against a second source.
+
+mod capsules;
+mod common;
+mod frames;
+mod margin;
+mod occupancy;
+mod schunk;
+mod stop;
