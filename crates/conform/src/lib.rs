@@ -14,6 +14,7 @@
 
 mod advice;
 mod answer;
+mod carry_over;
 mod check;
 mod check_job;
 pub mod claim;
@@ -38,6 +39,7 @@ pub mod tube;
 mod weights;
 
 pub use answer::Answer;
+pub use carry_over::carry_over;
 pub use check::{Check, check};
 pub use check_job::{CheckJob, Opened};
 pub use claim::verdict::Verdict;

@@ -7,9 +7,10 @@ use reachtube_reach::{Disturbance, TimeGrid};
 
 use crate::data::correction::InputCorrection;
 use crate::data::envelope::Envelope;
-use crate::data::settings::Settings;
+use crate::data::settings::{Noise, Settings};
 use crate::data::setup::Setup;
 use crate::data::shape::Shape;
+use crate::data::side::Side;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
 use crate::fit::parameters::Parameters;
@@ -19,6 +20,9 @@ use crate::program::block::Block;
 use crate::program::layout::Limits;
 use crate::program::program::{CLOSE, Program, RowIndex};
 use crate::sets::UncertaintySets;
+
+/// Track, sample among the rows, state, side.
+pub(crate) type StepRow = (usize, usize, usize, Side);
 
 /// What does not change during a fit.
 #[derive(Clone)]
@@ -111,7 +115,8 @@ impl FitTask<'_> {
         Ok(motions)
     }
 
-    /// Returns the program of `model` for the tracks named.
+    /// Returns the program of `model` for the tracks named. Its cost is over the samples of all
+    /// recordings.
     pub(crate) fn program(&self, model: &FitModel, tracks: &[usize]) -> Program<'_> {
         let (stride, states) = (self.stride, 2 * self.joints());
         let mut blocks: Vec<Block> = Vec::new();
@@ -134,11 +139,6 @@ impl FitTask<'_> {
             };
             let (lower, upper) = (off(Envelope::lower), off(Envelope::upper));
             blocks[track.grid].envelope.include_bounds(t as u32, &lower, &upper);
-        }
-        blocks.retain(|block| !block.envelope.is_empty());
-        for block in &mut blocks {
-            let samples = block.envelope.len();
-            block.times.truncate(samples);
         }
         let shape = Shape { states, inputs: self.joints() };
         Program::new((self.settings, shape), &self.weights, blocks).with_limits(self.limits.clone())
@@ -175,6 +175,21 @@ impl FitTask<'_> {
         Ok(Smallest { cost: program.cost(&sets), sets })
     }
 
+    /// Returns what a row must reach in `model`: the deviation, less the known noise.
+    pub(crate) fn deviation(&self, model: &FitModel, (t, k, i, side): StepRow) -> f64 {
+        let track = &self.data.tracks[t];
+        let (sample, states) = (k * self.stride, 2 * self.joints());
+        let nominal = model.motions[t][k * states + i];
+        let known = match &self.settings.noise {
+            Noise::Fixed(radii) => radii[i],
+            Noise::None | Noise::Fitted => 0.0,
+        };
+        match side {
+            Side::Upper => track.case.measured.upper(sample, i) - nominal - known,
+            Side::Lower => nominal - track.case.measured.lower(sample, i) - known,
+        }
+    }
+
     /// Returns the cost of the smallest sets of all tracks at every sample; `None` if a nominal
     /// motion runs away.
     ///
@@ -189,20 +204,6 @@ impl FitTask<'_> {
             Err(Error::RunsAway { .. }) => Ok(None),
             Err(error) => Err(error),
         }
-    }
-
-    /// Returns at most `few` tracks of each suite, from the first to the last, of all motions but
-    /// `left_out`.
-    pub(crate) fn few_tracks(&self, left_out: Option<usize>, few: usize) -> Vec<usize> {
-        let suite = |t: &usize| self.data.tracks[*t].case.suite;
-        let all = self.tracks(left_out);
-        let of_suite = |tracks: &[usize]| {
-            let last = tracks.len() - 1;
-            let mut chosen: Vec<usize> = (0..few).map(|i| tracks[i * last / (few - 1)]).collect();
-            chosen.dedup();
-            chosen
-        };
-        all.chunk_by(|a, b| suite(a) == suite(b)).flat_map(of_suite).collect()
     }
 
     /// Returns the tracks of all motions but `left_out`.

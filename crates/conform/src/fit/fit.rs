@@ -13,18 +13,14 @@ use crate::fit::group::{FitSettings, Group};
 use crate::fit::parameters::{FreeParameter, Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fit::search::{FoundNumbers, Search, SearchEffort};
+use crate::fit::search::{FoundNumbers, SearchEffort};
+use crate::fit::working_set::Wanted;
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::nominal::input_error::InputError;
+use crate::program::layout::Limits;
 use crate::program::program::Program;
 use crate::progress::{Progress, Silent};
 use crate::weights::state_weights;
-
-/// Tracks of a suite that decide where the search starts.
-const FEWEST: usize = 4;
-
-/// Tracks of a suite that the search goes on with.
-const FEW: usize = 8;
 
 /// What a fit found.
 #[derive(Debug)]
@@ -38,6 +34,9 @@ pub struct Fitted {
 /// Finds the parameters of the nominal model for which its sets cost least.
 ///
 /// Motions that calibrate the sets are held out from this fit too.
+///
+/// Without a given pull the problem keeps the identified model if that carries over better to
+/// motions that are left out.
 ///
 /// The answer is a model, not a claim: [`conform`](crate::conform) finds and proves its sets as it
 /// does for any other. A model that is not linear is given the parameters that suit the linear
@@ -63,8 +62,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         }
     };
     let setup = steering.setup();
-    let by_run = settings.groups.contains(&Group::WarmUp);
-    let data = Data::new(steering, by_run)?;
+    let data = Data::new(steering, settings.groups.contains(&Group::WarmUp))?;
     if data.motions.len() < 2 {
         return Err(Error::Fit(one_motion(kept.is_some())));
     }
@@ -82,9 +80,13 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         settings: &setup.settings,
         limits: steering.limits(),
     };
-    let choice = choose(&fit, settings.pull)?;
+    let choice = choose(&fit, &steering.limits_without_each(&data), settings.pull)?;
     progress.finished(&format!("the weight of the pull is {}", choice.pull));
     progress.go_on()?;
+    if settings.pull.is_none() && !choice.carries_over() {
+        let (record, setup) = (not_taken(&fit, choice, steering)?, problem.setup().clone());
+        return Ok(Fitted { problem: problem.with_setup(setup), record });
+    }
     let found = search(&fit, &settings.distinct_groups(), choice.pull)?;
     progress.finished(&format!("the fit took {} steps", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {
@@ -100,7 +102,8 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
     }
     let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
-    let mut record = record(&fit, settings, choice, &found.numbers, costs)?;
+    let mut record =
+        record(&fit, &settings.distinct_groups(), choice, Some(&found.numbers), costs)?;
     record.identified_calibrated_cost = calibrated_cost(problem);
     // The numbers go to the model that was asked for, with all motions.
     let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
@@ -117,25 +120,20 @@ fn speeds_of_friction(problem: &Problem, steering: &Problem, groups: &[Group]) -
     (0..joints).map(|joint| steering.highest_speed(joint)).collect()
 }
 
-/// Searches with `pull` in parts of the identified model's cost: few runs of each suite show where
-/// to go, and all of them decide the end.
+/// Searches with `pull` in parts of the identified model's cost.
 ///
 /// The cost has more than one local optimum. One search moves all groups from the beginning, and
 /// one for each group first the others; the best answer counts.
 fn search(fit: &FitTask, groups: &[Group], pull: f64) -> Result<FoundNumbers> {
     let (start, tracks) = (fit.parameters.start(), fit.tracks(None));
     let pull = pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
-    let search = |tracks: &[usize], held, effort| {
-        let tracks = tracks.to_vec();
-        Search { fit, tracks, pull, held, effort }
-    };
-    let fewest = fit.few_tracks(None, FEWEST);
+    let wanted = |held, effort| Wanted { left_out: None, pull, held, effort };
     let of_held = |held: Option<Group>| {
         let first = match held {
-            Some(_) => search(&fewest, held, SearchEffort::START).run(&start)?.numbers,
+            Some(group) => fit.search(&wanted(vec![group], SearchEffort::START), &start)?.numbers,
             None => start.clone(),
         };
-        search(&fewest, None, SearchEffort::START).run(&first)
+        fit.search(&wanted(Vec::new(), SearchEffort::START), &first)
     };
     let held = groups.iter().map(|group| Some(*group)).filter(|_| groups.len() > 1);
     let starts: Vec<Option<Group>> = std::iter::once(None).chain(held).collect();
@@ -146,14 +144,8 @@ fn search(fit: &FitTask, groups: &[Group], pull: f64) -> Result<FoundNumbers> {
             best = other;
         }
     }
-    let few = fit.few_tracks(None, FEW);
-    let found = search(&few, None, SearchEffort::WHOLE).run(&best.numbers)?;
-    let steps = best.steps + found.steps;
-    if few.len() == tracks.len() {
-        return Ok(FoundNumbers { steps, ..found });
-    }
-    let last = search(&tracks, None, SearchEffort::LAST).run(&found.numbers)?;
-    Ok(FoundNumbers { steps: steps + last.steps, ..last })
+    let found = fit.search(&wanted(Vec::new(), SearchEffort::WHOLE), &best.numbers)?;
+    Ok(FoundNumbers { steps: best.steps + found.steps, ..found })
 }
 
 /// Refuses what cannot be fitted, whatever the recordings are.
@@ -181,6 +173,19 @@ fn one_motion(others_are_held_out: bool) -> String {
     )
 }
 
+impl Problem {
+    /// Returns what limits the sets of all motions but one, for each motion.
+    fn limits_without_each(&self, data: &Data) -> Vec<Limits> {
+        let of = |motion: usize| {
+            let is_own = |suite| {
+                data.tracks.iter().any(|track| track.motion == motion && track.case.suite == suite)
+            };
+            self.with_suites(|suite| !is_own(suite)).limits()
+        };
+        (0..data.motions.len()).map(of).collect()
+    }
+}
+
 /// The cost of the smallest sets of a linear model, as [`conform`](crate::conform) finds it.
 fn smallest_cost(problem: &Problem) -> Result<f64> {
     let program = Program::of_problem(problem)?;
@@ -205,40 +210,74 @@ fn linear_setup(setup: &Setup) -> Result<Setup> {
     Ok(linear)
 }
 
+/// Returns the record of a fit that was not taken.
+fn not_taken(fit: &FitTask, choice: PullChoice, steering: &Problem) -> Result<FitRecord> {
+    record(fit, &[], choice, None, [smallest_cost(steering)?; 2])
+}
+
+/// Returns the record of a fit of `groups` that found numbers, or that was not taken.
 fn record(
     fit: &FitTask,
-    settings: &FitSettings,
+    groups: &[Group],
     choice: PullChoice,
-    numbers: &[f64],
+    found: Option<&[f64]>,
     [identified_cost, cost]: [f64; 2],
 ) -> Result<FitRecord> {
     let setup = fit.parameters.setup();
+    let numbers = found.map_or_else(|| vec![0.0; fit.parameters.len()], <[f64]>::to_vec);
     let cost_without = |group: &Group| {
-        let kept = |(x, parameter): (&f64, &FreeParameter)| match parameter.quantity.group() {
-            of if of == *group => 0.0,
-            _ => *x,
+        let wanted = Wanted {
+            left_out: None,
+            pull: choice.pull * identified_cost,
+            held: vec![*group],
+            effort: SearchEffort::QUICK,
         };
-        let numbers: Vec<f64> = numbers.iter().zip(&fit.parameters.list).map(kept).collect();
-        Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&numbers)? })
+        let (start, without) = (fit.parameters.start(), fit.without(*group, &numbers));
+        if groups.len() == 1 {
+            return Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&start)? });
+        }
+        // Without a group a nominal motion may run away until the others are fitted again.
+        let again = fit.search(&wanted, &without);
+        let again = again.or_else(|_| fit.search(&wanted, &start));
+        let cost_without = again.map_or(Ok(None), |again| fit.whole_cost(&again.numbers))?;
+        Ok(GroupCost { group: *group, cost_without })
     };
-    let groups = settings.distinct_groups();
     let cases = || fit.data.tracks.iter().map(|track| &track.case);
     let before = InputError::of_cases(setup, cases())?;
-    let after = InputError::of_cases(&fit.parameters.apply(numbers)?, cases())?;
+    let after = match found {
+        Some(numbers) => InputError::of_cases(&fit.parameters.apply(numbers)?, cases())?,
+        None => before.clone(),
+    };
     let torque = before.into_iter().zip(after).enumerate();
     Ok(FitRecord {
         pull: choice.pull,
         identified_cost,
         cost,
         groups: groups.par_iter().map(cost_without).collect::<Result<_>>()?,
+        taken: found.is_some(),
         leave_one_out: choice.left_out,
+        identified_left_out: choice.identified,
         identified_calibrated_cost: None,
         pulls: choice.tried,
-        parameters: parameters_of(fit, numbers, setup),
+        parameters: parameters_of(fit, &numbers, setup),
         torque: torque
             .map(|(j, (identified, fitted))| TorquePrediction { joint: j + 1, identified, fitted })
             .collect(),
     })
+}
+
+impl FitTask<'_> {
+    /// Returns `numbers`, in which a group has the numbers that a fit starts from.
+    fn without(&self, group: Group, numbers: &[f64]) -> Vec<f64> {
+        let start = self.parameters.start();
+        let parameters = self.parameters.list.iter().zip(numbers.iter().zip(&start));
+        let kept = parameters.map(
+            |(parameter, (x, start))| {
+                if parameter.quantity.group() == group { *start } else { *x }
+            },
+        );
+        kept.collect()
+    }
 }
 
 fn coulomb_name(quadrants: [bool; 4]) -> &'static str {

@@ -4,70 +4,102 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::fit::evaluation::FitTask;
+use crate::fit::parameters::Parameters;
 use crate::fit::record::{PullCost, UnseenMotion};
-use crate::fit::search::{Search, SearchEffort};
+use crate::fit::search::SearchEffort;
+use crate::fit::unseen::Unseen;
+use crate::fit::working_set::Wanted;
+use crate::program::layout::Limits;
 
 /// The weights that are tried, in parts of the identified model's cost per unit, the strongest
 /// first.
-const PULLS: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
-
-/// Tracks of a suite that are enough to compare weights by.
-const FEW: usize = 4;
+const PULLS: [f64; 6] = [0.3, 0.1, 0.03, 0.01, 0.003, 0.001];
 
 /// The pull that was chosen.
 pub(crate) struct PullChoice {
     pub pull: f64,
-    /// Cost of the sets of all motions when one was left out of the fit.
+    /// How the model that was fitted without each motion carries over to it.
     pub left_out: Vec<UnseenMotion>,
-    /// The mean of these costs for each weight that was tried.
+    /// How the identified model carries over to each motion.
+    pub identified: Vec<UnseenMotion>,
+    /// The mean costs for each weight that was tried.
     pub tried: Vec<PullCost>,
 }
 
-/// Chooses among the weights, or tries `given` only: for each motion the model is fitted without
-/// it, and the sets of all motions are found for that model. The weight with the least mean cost is
-/// chosen.
+impl PullChoice {
+    /// Returns whether fits carry over to motions that they have not seen at least as well as the
+    /// identified model.
+    pub(crate) fn carries_over(&self) -> bool {
+        let means = [&self.identified, &self.left_out].map(|of| PullCost::new(self.pull, of));
+        !means[0].is_less(&means[1])
+    }
+}
+
+/// A motion that is left out, while one weight after the other is tried.
+struct Fold<'a> {
+    own: FitTask<'a>,
+    unseen: Unseen<'a>,
+    /// The cost of the sets of the other motions for the model that a fit starts from.
+    start_cost: f64,
+    numbers: Vec<f64>,
+}
+
+/// Chooses among the weights, or tries `given` only.
+///
+/// For each motion the model is fitted, and its sets are found, without it. The weight is chosen
+/// whose sets cost least in the mean once they have grown until they enclose the motion. Weaker
+/// weights than the first one that is worse are not tried. `limits` has what limits the sets of the
+/// other motions, for each motion.
 ///
 /// # Errors
 ///
-/// As [`Search::run`].
-pub(crate) fn choose(fit: &FitTask, given: Option<f64>) -> Result<PullChoice> {
+/// As [`FitTask::search`] and [`Unseen::compare`].
+pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Result<PullChoice> {
     let pulls = given.map_or_else(|| PULLS.to_vec(), |pull| vec![pull]);
-    let of_motion = |motion: usize| leave_out(fit, motion, &pulls);
-    let motions = fit.data.motions.len();
-    let costs: Vec<Vec<Option<f64>>> =
-        (0..motions).into_par_iter().map(of_motion).collect::<Result<_>>()?;
-    let mean = |at: usize| {
-        let sum: Option<f64> = costs.iter().map(|of| of[at]).sum();
-        sum.map(|sum| sum / motions as f64)
-    };
-    let worth = |at: usize| mean(at).unwrap_or(f64::INFINITY);
-    let tried: Vec<PullCost> =
-        pulls.iter().enumerate().map(|(at, &pull)| PullCost { pull, cost: mean(at) }).collect();
-    let best = (0..pulls.len()).min_by(|a, b| worth(*a).total_cmp(&worth(*b))).unwrap_or(0);
-    let left_out = fit.data.motions.iter().zip(&costs);
-    let left_out = left_out
-        .map(|(motion, of)| UnseenMotion { motion: motion.clone(), cost: of[best] })
-        .collect();
-    Ok(PullChoice { pull: pulls[best], left_out, tried })
+    let started =
+        limits.par_iter().enumerate().map(|(motion, limits)| Fold::new(fit, motion, limits));
+    let mut folds: Vec<Fold> = started.collect::<Result<_>>()?;
+    let identified = Parameters::new(fit.parameters.setup(), &[], &[]);
+    let identified = folds.par_iter().map(|Fold { unseen: Unseen { whole, motion }, .. }| {
+        let whole = FitTask { parameters: &identified, ..whole.clone() };
+        Unseen { whole, motion: *motion }.compare(&[])
+    });
+    let identified = identified.collect::<Result<_>>()?;
+    let (mut tried, mut best) = (Vec::<PullCost>::new(), None);
+    for pull in pulls {
+        let left_out =
+            folds.par_iter_mut().map(|fold| fold.fit(pull)).collect::<Result<Vec<_>>>()?;
+        let mean = PullCost::new(pull, &left_out);
+        let is_better = best.as_ref().is_none_or(|(least, _)| mean.is_less(least));
+        tried.push(mean.clone());
+        if is_better {
+            best = Some((mean, left_out));
+        } else {
+            break;
+        }
+    }
+    let (PullCost { pull, .. }, left_out) = best.unwrap_or_default();
+    Ok(PullChoice { pull, left_out, identified, tried })
 }
 
-/// Fits without a motion for each weight, each from the answer before, and returns the costs of the
-/// sets of all motions; `None` if a nominal motion runs away.
-fn leave_out(fit: &FitTask, motion: usize, pulls: &[f64]) -> Result<Vec<Option<f64>>> {
-    let tracks = fit.few_tracks(Some(motion), FEW);
-    let mut numbers = fit.parameters.start();
-    let identified = fit.smallest(&fit.model(&numbers, &tracks, None)?, &tracks)?.cost;
-    let mut costs = Vec::new();
-    for pull in pulls {
-        let search = Search {
-            fit,
-            tracks: tracks.clone(),
-            pull: pull * identified,
-            held: None,
+impl<'a> Fold<'a> {
+    fn new(fit: &FitTask<'a>, motion: usize, limits: &Limits) -> Result<Self> {
+        let own = FitTask { limits: limits.clone(), ..fit.clone() };
+        let unseen = Unseen { whole: FitTask { stride: 1, ..own.clone() }, motion };
+        let (numbers, tracks) = (own.parameters.start(), own.tracks(Some(motion)));
+        let start_cost = own.smallest(&own.model(&numbers, &tracks, None)?, &tracks)?.cost;
+        Ok(Self { own, unseen, start_cost, numbers })
+    }
+
+    /// Fits with a weight from the answer before, and compares the motion with the others' sets.
+    fn fit(&mut self, pull: f64) -> Result<UnseenMotion> {
+        let wanted = Wanted {
+            left_out: Some(self.unseen.motion),
+            pull: pull * self.start_cost,
+            held: Vec::new(),
             effort: SearchEffort::QUICK,
         };
-        numbers = search.run(&numbers)?.numbers;
-        costs.push(fit.whole_cost(&numbers)?);
+        self.numbers = self.own.search(&wanted, &self.numbers)?.numbers;
+        self.unseen.compare(&self.numbers)
     }
-    Ok(costs)
 }

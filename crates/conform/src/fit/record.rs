@@ -19,9 +19,16 @@ pub struct FitRecord {
     /// What each group is worth. These costs, and the costs without each motion, are approximate
     /// where the times between samples differ.
     pub groups: Vec<GroupCost>,
-    /// Cost of the sets of all motions when one was left out of the fit of the nominal model. They
-    /// compare with `identified_cost`.
+    /// Whether the model has the fitted values. Without a given pull it keeps the identified ones
+    /// where these carry over better to motions that are left out.
+    #[serde(default = "taken")]
+    pub taken: bool,
+    /// How the nominal model that was fitted without each motion, and its sets, carry over to that
+    /// motion.
     pub leave_one_out: Vec<UnseenMotion>,
+    /// How the identified model and its sets carry over to each motion.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub identified_left_out: Vec<UnseenMotion>,
     /// Cost of the identified model's sets when they are calibrated with the same motions; nothing
     /// without calibration, for a model that is not linear, and where no factor calibrates them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -34,14 +41,20 @@ pub struct FitRecord {
     pub torque: Vec<TorquePrediction>,
 }
 
+/// Models of earlier versions have every fit that was made.
+fn taken() -> bool {
+    true
+}
+
 /// What a group of parameters is worth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupCost {
     /// The group.
     pub group: Group,
-    /// Cost of the sets with this group at its identified values and all others as fitted; `None`
-    /// if a nominal motion runs away.
+    /// Cost of the sets with this group at its identified values and the others fitted again by a
+    /// quick search, which may end somewhat above their optimum; `None` if a nominal motion runs
+    /// away.
     pub cost_without: Option<f64>,
 }
 
@@ -54,16 +67,70 @@ pub struct UnseenMotion {
     /// Cost of the sets of all motions for the nominal model that was fitted without it; `None`
     /// if a nominal motion runs away.
     pub cost: Option<f64>,
+    /// Cost of the sets of the other motions for that model.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost_without: Option<f64>,
+    /// The factor, at least 1, by which the radii of these sets must grow to enclose the motion;
+    /// `None` if no factor suffices.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growth: Option<f64>,
+    /// Cost of these sets once they have grown so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grown_cost: Option<f64>,
+    /// How many rows of the motion leave these sets.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outside: Option<usize>,
+    /// Number of rows of the motion.
+    #[serde(default)]
+    pub rows: usize,
+}
+
+impl UnseenMotion {
+    /// Makes the record of a motion without which a nominal motion runs away.
+    pub(crate) fn runs_away(motion: String) -> Self {
+        let (cost, cost_without, growth, grown_cost, outside) = Default::default();
+        Self { motion, cost, cost_without, growth, grown_cost, outside, rows: 0 }
+    }
+}
+
+/// Returns the mean of a number over motions; `None` if one of them has none.
+pub(crate) fn mean_of(
+    motions: &[UnseenMotion],
+    of: impl Fn(&UnseenMotion) -> Option<f64>,
+) -> Option<f64> {
+    let sum: Option<f64> = motions.iter().map(of).sum();
+    sum.map(|sum| sum / motions.len() as f64)
 }
 
 /// A weight of the pull that was tried.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PullCost {
     /// The weight.
     pub pull: f64,
-    /// The mean cost over the motions left out; `None` if a nominal motion runs away.
+    /// The mean cost of the sets of all motions over the motions left out; `None` if a nominal
+    /// motion runs away.
     pub cost: Option<f64>,
+    /// The mean cost, over the motions left out, of the sets that were found without a motion and
+    /// have grown until they enclose it; `None` if no factor suffices for one of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grown_cost: Option<f64>,
+}
+
+impl PullCost {
+    /// Returns the means for a weight.
+    pub(crate) fn new(pull: f64, left_out: &[UnseenMotion]) -> Self {
+        let cost = mean_of(left_out, |left| left.cost);
+        Self { pull, cost, grown_cost: mean_of(left_out, |left| left.grown_cost) }
+    }
+
+    /// Returns whether the grown sets cost less than for another weight. If no factor suffices for
+    /// either, the sets of all motions are compared.
+    pub(crate) fn is_less(&self, other: &Self) -> bool {
+        let size = |cost: Option<f64>| cost.unwrap_or(f64::INFINITY);
+        let of = |costs: &Self| [size(costs.grown_cost), size(costs.cost)];
+        of(self) < of(other)
+    }
 }
 
 impl FitRecord {
@@ -71,18 +138,36 @@ impl FitRecord {
     /// if a nominal motion runs away.
     #[must_use]
     pub fn left_out_mean(&self) -> Option<f64> {
-        let sum: Option<f64> = self.leave_one_out.iter().map(|left| left.cost).sum();
-        sum.map(|sum| sum / self.leave_one_out.len() as f64)
+        mean_of(&self.leave_one_out, |left| left.cost)
+    }
+
+    /// Returns the mean cost, over the motions left out, of the sets that have grown until they
+    /// enclose the motion: of the identified and of the fitted model.
+    pub(crate) fn carried_over(&self) -> [Option<f64>; 2] {
+        [&self.identified_left_out, &self.leave_one_out].map(|of| mean_of(of, |m| m.grown_cost))
+    }
+
+    /// Returns whether the identified model carries over better to motions that are left out.
+    fn is_worse(&self) -> bool {
+        let [identified, fitted] =
+            [&self.identified_left_out, &self.leave_one_out].map(|of| PullCost::new(self.pull, of));
+        match self.identified_left_out.is_empty() {
+            true => fitted.cost.is_none_or(|mean| mean > self.identified_cost),
+            false => identified.is_less(&fitted),
+        }
     }
 
     /// Returns why the fit suits its motions only, if it does. `calibrated_cost` is the cost of the
     /// fitted model's calibrated sets, where they are calibrated.
     pub(crate) fn overfitted(&self, calibrated_cost: Option<f64>) -> Option<Overfit> {
         let costs = self.identified_calibrated_cost.zip(calibrated_cost);
-        match (costs.filter(|(before, after)| after > before), self.left_out_mean()) {
-            (Some((identified, fitted)), _) => Some(Overfit::Calibrated { identified, fitted }),
-            (None, Some(mean)) if mean <= self.identified_cost => None,
-            (None, _) => Some(Overfit::LeftOut),
+        match costs.filter(|(before, after)| after > before) {
+            _ if !self.taken => None,
+            Some((identified, fitted)) => Some(Overfit::Calibrated { identified, fitted }),
+            None => self.is_worse().then(|| {
+                let [identified, fitted] = self.carried_over();
+                Overfit::LeftOut { identified, fitted }
+            }),
         }
     }
 }
@@ -92,8 +177,9 @@ impl FitRecord {
 pub(crate) enum Overfit {
     /// Calibrated sets cost more with the fitted model than with the identified one.
     Calibrated { identified: f64, fitted: f64 },
-    /// With a motion left out, the fitted model needs larger sets than the identified one.
-    LeftOut,
+    /// With a motion left out, the fitted model needs larger sets than the identified one. The
+    /// mean costs of sets that have grown until they enclose the motion, where they were found.
+    LeftOut { identified: Option<f64>, fitted: Option<f64> },
 }
 
 /// A parameter before and after.

@@ -1,8 +1,8 @@
 use crate::error::{Error, Result};
-use crate::fit::evaluation::{FitModel, FitTask, Smallest};
+use crate::fit::evaluation::{FitModel, FitTask, Smallest, StepRow};
 use crate::fit::group::Group;
 use crate::fit::slopes::slopes;
-use crate::fit::step::{StepProgram, StepRow};
+use crate::fit::step::StepProgram;
 use crate::program::program::RowIndex;
 
 /// The first trust region: numbers may move by this much.
@@ -28,8 +28,8 @@ pub(crate) struct Search<'a> {
     pub tracks: Vec<usize>,
     /// Cost of a number's distance from 0.
     pub pull: f64,
-    /// A group whose numbers stay as they are.
-    pub held: Option<Group>,
+    /// Groups whose numbers stay as they are.
+    pub held: Vec<Group>,
     pub effort: SearchEffort,
 }
 
@@ -47,8 +47,6 @@ pub(crate) struct SearchEffort {
 impl SearchEffort {
     /// For the answer.
     pub(crate) const WHOLE: Self = Self { settled: 5e-5, steps: 40, is_physical: true };
-    /// For an answer that was found on fewer tracks.
-    pub(crate) const LAST: Self = Self { settled: 5e-5, steps: 4, is_physical: true };
     /// For where to start.
     pub(crate) const START: Self = Self { is_physical: true, ..Self::QUICK };
     /// For comparisons.
@@ -73,12 +71,12 @@ impl Search<'_> {
         let mut point = self.point(start.to_vec(), &mut own_rows)?;
         let (mut trust, mut steps) = (FIRST_TRUST, 0);
         'search: for _ in 0..self.effort.steps {
-            let slopes =
-                match slopes(self.fit, &point.numbers, &self.tracks, &point.model, &point.smallest)
-                {
-                    Err(Error::RunsAway { .. }) => break 'search,
-                    slopes => slopes?,
-                };
+            let at = (point.numbers.as_slice(), self.held.as_slice());
+            let slopes = slopes(self.fit, at, &self.tracks, &point.model, &point.smallest);
+            let slopes = match slopes {
+                Err(Error::RunsAway { .. }) => break 'search,
+                slopes => slopes?,
+            };
             let program = self.fit.program(&point.model, &self.tracks);
             loop {
                 let step = StepProgram {
@@ -90,7 +88,7 @@ impl Search<'_> {
                     numbers: &point.numbers,
                     smallest: &point.smallest,
                     trust,
-                    held: self.held,
+                    held: &self.held,
                     pull: self.pull,
                 };
                 let Ok(answer) = step.solve(&mut rows) else { break 'search };

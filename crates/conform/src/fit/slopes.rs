@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::fit::evaluation::{FitModel, FitTask, Smallest};
+use crate::fit::group::Group;
 
 /// The step of a difference, in the numbers of the parameters.
 const DIFFERENCE: f64 = 1e-4;
@@ -19,14 +20,14 @@ pub(crate) struct Slope {
 }
 
 /// Returns the derivatives for `tracks` at `numbers`, where the model is `model` and its smallest
-/// sets are `smallest`, one for each parameter.
+/// sets are `smallest`, one for each parameter; none for parameters of the groups `held`.
 ///
 /// # Errors
 ///
 /// As [`FitTask::model`].
 pub(crate) fn slopes(
     fit: &FitTask,
-    numbers: &[f64],
+    (numbers, held): (&[f64], &[Group]),
     tracks: &[usize],
     model: &FitModel,
     smallest: &Smallest,
@@ -38,6 +39,9 @@ pub(crate) fn slopes(
     };
     let (centre, radius) = (set(|s| &s.centre), set(|s| &s.radius));
     let of = |p: usize| {
+        if held.contains(&fit.parameters.list[p].quantity.group()) {
+            return Ok(Slope { motions: Vec::new(), reach: None });
+        }
         let mut moved = numbers.to_vec();
         let up = numbers[p] + DIFFERENCE <= fit.parameters.list[p].bounds[1];
         let step = if up { DIFFERENCE } else { -DIFFERENCE };

@@ -12,10 +12,9 @@ use std::collections::{BTreeMap, HashSet};
 
 use rayon::prelude::*;
 
-use crate::data::settings::Noise;
 use crate::data::side::Side;
 use crate::error::Result;
-use crate::fit::evaluation::{FitModel, FitTask, Smallest};
+use crate::fit::evaluation::{FitModel, FitTask, Smallest, StepRow};
 use crate::fit::group::Group;
 use crate::fit::slopes::Slope;
 use crate::program::layout::Layout;
@@ -25,8 +24,11 @@ use crate::program::solver::{Triplets, solve_cone};
 /// A row counts as violated beyond this part of the largest row.
 const TOLERANCE: f64 = 1e-7;
 
-/// Windows of the horizon; each adds its worst violated row.
+/// Windows of the horizon at most; each adds its worst violated row.
 const WINDOWS: usize = 24;
+
+/// Samples of a window at least.
+const SAMPLES: usize = 4;
 
 /// Tracks that the first rows are taken from at most.
 const FIRST_TRACKS: usize = 4;
@@ -49,9 +51,6 @@ const SET_TRUST: f64 = 0.1;
 /// The tolerance of the solver. A step need not be exact: the cost at its end decides.
 const SOLVER_TOLERANCE: f64 = 1e-8;
 
-/// Track, sample among the rows, state, side.
-pub(crate) type StepRow = (usize, usize, usize, Side);
-
 /// The program of one step.
 pub(crate) struct StepProgram<'a> {
     pub fit: &'a FitTask<'a>,
@@ -67,8 +66,8 @@ pub(crate) struct StepProgram<'a> {
     pub smallest: &'a Smallest,
     /// How far each number may move.
     pub trust: f64,
-    /// A group whose numbers may not move.
-    pub held: Option<Group>,
+    /// Groups whose numbers may not move.
+    pub held: &'a [Group],
     /// Cost of a number's distance from 0.
     pub pull: f64,
 }
@@ -114,7 +113,7 @@ impl StepProgram<'_> {
     /// bounds of the absolute values of these numbers.
     fn free(&self) -> Vec<usize> {
         let list = self.fit.parameters.list.iter().enumerate();
-        let free = list.filter(|(_, p)| Some(p.quantity.group()) != self.held);
+        let free = list.filter(|(_, p)| !self.held.contains(&p.quantity.group()));
         free.map(|(p, _)| p).collect()
     }
 
@@ -170,33 +169,12 @@ impl StepProgram<'_> {
         })
     }
 
-    /// What a row must reach at the present parameters.
-    fn deviation(&self, (t, k, i, side): StepRow) -> f64 {
-        let track = &self.fit.data.tracks[t];
-        let (sample, states) = (k * self.fit.stride, 2 * self.fit.joints());
-        let nominal = self.model.motions[t][k * states + i];
-        let known = match &self.fit.settings.noise {
-            Noise::Fixed(radii) => radii[i],
-            Noise::None | Noise::Fitted => 0.0,
-        };
-        match side {
-            Side::Upper => track.case.measured.upper(sample, i) - nominal - known,
-            Side::Lower => nominal - track.case.measured.lower(sample, i) - known,
-        }
-    }
-
     /// The derivative of the cost of the present sets with respect to each parameter.
     fn cost_slopes(&self) -> Vec<f64> {
         let n = self.fit.joints();
         let of = |slope: &Slope| {
             let Some(reach) = &slope.reach else { return 0.0 };
-            let used: Vec<&Vec<[f64; 2]>> = reach
-                .iter()
-                .enumerate()
-                .filter(|(g, _)| self.tracks.iter().any(|t| self.fit.data.tracks[*t].grid == *g))
-                .map(|(_, reach)| reach)
-                .collect();
-            let blocks = used.iter().zip(&self.program.shares);
+            let blocks = reach.iter().zip(&self.program.shares);
             blocks
                 .map(|(reach, shares)| {
                     let samples = reach.chunks_exact(2 * n).zip(shares);
@@ -235,7 +213,7 @@ impl StepProgram<'_> {
             let size = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
             matrix.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / size)));
             let present = free.iter().map(|&p| self.slope(p, row) * self.numbers[p]);
-            bounds.push(-(self.deviation(row) + present.sum::<f64>()) / size);
+            bounds.push(-(self.fit.deviation(self.model, row) + present.sum::<f64>()) / size);
         }
         layout.restrict(self.fit.settings.centre, &mut matrix, &mut bounds, &unit);
         layout.limit(&self.fit.limits, &mut matrix, &mut bounds, &unit);
@@ -309,8 +287,10 @@ impl StepProgram<'_> {
         if layout.cost.len() > centres + 3 * n {
             reach += unknowns[centres + 3 * n + i];
         }
-        let change: f64 = moved.iter().enumerate().map(|(p, x)| self.slope(p, row) * x).sum();
-        self.deviation(row) - change - reach
+        // Derivatives of numbers that are held are not known, and not needed.
+        let moved = moved.iter().enumerate().filter(|(_, x)| **x != 0.0);
+        let change: f64 = moved.map(|(p, x)| self.slope(p, row) * x).sum();
+        self.fit.deviation(self.model, row) - change - reach
     }
 
     /// The worst violated row of each grid, window, state and side that is not among `known`.
@@ -329,13 +309,14 @@ impl StepProgram<'_> {
         let of_track = |&t: &usize| {
             let mut worst = Worst::new();
             let (samples, grid) = (self.samples(t), self.fit.data.tracks[t].grid);
+            let windows = WINDOWS.min(samples.div_ceil(SAMPLES));
             for k in 0..samples {
                 for i in 0..states {
                     for side in Side::BOTH {
                         let row = (t, k, i, side);
                         let excess = self.excess(row, &layout, unknowns, &moved);
                         if excess > limit && !known.contains(&row) {
-                            let key = (grid, k * WINDOWS / samples, i, side == Side::Upper);
+                            let key = (grid, k * windows / samples, i, side == Side::Upper);
                             take(&mut worst, key, excess, row);
                         }
                     }

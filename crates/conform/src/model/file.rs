@@ -304,27 +304,6 @@ impl Model {
         json::to_lines(&self.clone().sealed())
     }
 
-    /// Returns the model with the record of how its nominal model was fitted, and a warning where
-    /// the fit suits its own motions only.
-    #[must_use]
-    pub fn with_fit(mut self, record: FitRecord) -> Self {
-        let calibrated_cost = self.calibration.as_ref().and(self.cost);
-        let overfit = record.overfitted(calibrated_cost);
-        self.warnings.extend(overfit.as_ref().map(Warning::from));
-        let seen = self.fitted_runs();
-        self.robot.add_identified_from(seen);
-        Self { fit: Some(record), ..self }.sealed()
-    }
-
-    /// Returns the SHA-256 of the listed recordings that a fit has seen: recordings of motions that
-    /// were not held out.
-    fn fitted_runs(&self) -> Vec<String> {
-        let held_out: HashSet<&str> =
-            self.calibration.iter().flat_map(Calibration::held_out).collect();
-        let suites = self.data.suites.iter().filter(|suite| !held_out.contains(suite.motion()));
-        suites.flat_map(|suite| &suite.runs).map(|run| run.sha256.clone()).collect()
-    }
-
     pub(super) fn sealed(self) -> Self {
         Self { sha256: self.digest(), ..self }
     }

@@ -3,6 +3,7 @@
 mod candidates;
 mod compared;
 pub(crate) mod file;
+mod fitted;
 pub(crate) mod other_data;
 pub(crate) mod provenance;
 mod reach_record;

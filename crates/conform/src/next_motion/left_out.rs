@@ -111,6 +111,24 @@ fn merged(all: Vec<Missing>) -> Missing {
     merged
 }
 
+/// Finds the sets of the other motions of a linear model, and compares `motion` with them.
+///
+/// # Errors
+///
+/// As [`Problem::run`]; [`Error::NotLinear`](crate::Error::NotLinear).
+pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<LeftOut> {
+    let motions = Motions::new(problem.recordings());
+    let suites = 0..problem.recordings().suites.len();
+    let suites = suites.map(|suite| motions.of_suite(suite) == motion).collect();
+    let without = Without { problem, suites };
+    let limits = problem.with_suites(|suite| !without.suites[suite]).limits();
+    let program = Program::of_problem(problem)?.with_limits(limits);
+    let (own, others) = (without.own(&program)?, without.others(&program)?);
+    let (rows, [cost, gauge]) = (without.row_count()?, [None; 2]);
+    let unknown = LeftOut { motion: motion.into(), cost, rows, outside: None, gauge };
+    Ok(without.compare(&others, &[], &own, unknown)?.0)
+}
+
 impl Without<'_> {
     /// Returns the program with the rows of some suites alone.
     fn rows<'p>(&self, program: &Program<'p>, of: impl Fn(usize) -> bool) -> Result<Program<'p>> {

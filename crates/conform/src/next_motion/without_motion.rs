@@ -1,5 +1,7 @@
 use serde::{Deserialize, Serialize};
 
+use crate::fit::record::UnseenMotion;
+
 /// The sets of all motions but one, and how that one lies to them. A description, to rounding:
 /// nothing of it is proved, and it bounds no probability.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,4 +20,12 @@ pub struct LeftOut {
     /// `None` if no factor suffices, or where the reachable set of a model that is not linear
     /// is lost before one does.
     pub gauge: Option<f64>,
+}
+
+impl From<&UnseenMotion> for LeftOut {
+    fn from(unseen: &UnseenMotion) -> Self {
+        let UnseenMotion { motion, cost_without, rows, outside, growth, .. } = unseen;
+        let (motion, rows, outside) = (motion.clone(), *rows, *outside);
+        Self { motion, cost: *cost_without, rows, outside, gauge: *growth }
+    }
 }

@@ -1,4 +1,5 @@
 use reachtube_recordings::State;
+use reachtube_robot::JointKind;
 
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
@@ -49,7 +50,7 @@ pub(crate) fn warnings(
         (0..2 * n).flat_map(|i| of_state(problem, sets, radii.get(i), fit, i)).collect();
     remarks.extend((0..n).filter_map(|joint| of_input(problem, sets, fit, joint)));
     remarks.extend((0..n).filter_map(|joint| offset(problem, sets, fit, joint)));
-    remarks.extend(zeros(problem, sets, input_error));
+    remarks.extend(zeros(&problem.robot().kinds(), sets, input_error));
     remarks.extend((0..n).filter_map(|joint| beyond_fitted(problem, joint)));
     remarks.extend((0..n).filter_map(|joint| falling(problem, joint)));
     let of_kind = |kind: WarningKind| {
@@ -160,7 +161,7 @@ fn offset(
 
 /// Returns remarks on joints whose U is 0 beside their input error, if U of another joint is many
 /// times its own error.
-fn zeros(problem: &Problem, sets: &UncertaintySets, input_error: &[f64]) -> Vec<Remark> {
+fn zeros(kinds: &[JointKind], sets: &UncertaintySets, input_error: &[f64]) -> Vec<Remark> {
     let reach = |joint: usize| {
         let (low, high) = sets.input_set.bounds(joint);
         high.max(-low)
@@ -175,7 +176,7 @@ fn zeros(problem: &Problem, sets: &UncertaintySets, input_error: &[f64]) -> Vec<
             "joint {} {} {}, {}",
             joint + 1,
             short(reach(joint)),
-            problem.robot().kinds()[joint].force_unit(),
+            kinds[joint].force_unit(),
             short(*error)
         ),
     };
@@ -188,5 +189,28 @@ fn short(value: f64) -> String {
     match exponent {
         -3..=4 => format!("{value:.*}", (2 - exponent).max(0) as usize),
         _ => format!("{value:.2e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use reachtube_reach::Hyperrectangle;
+
+    use super::*;
+
+    #[test]
+    fn a_set_of_0_is_remarked_if_another_joint_covers_its_error() {
+        let zeros_of = |radius: [f64; 2]| -> Vec<usize> {
+            let set = |radius: Vec<f64>| Hyperrectangle { centre: vec![0.0; 2], radius };
+            let (initial_set, input_set) = (set(vec![0.0; 2]), set(radius.to_vec()));
+            let sets = UncertaintySets { initial_set, input_set, noise_set: None };
+            let remarks = zeros(&[JointKind::Revolute; 2], &sets, &[0.1, 0.2]);
+            assert!(remarks.iter().all(|remark| remark.kind == WarningKind::InputSetZero));
+            remarks.iter().map(|remark| remark.joint).collect()
+        };
+        assert_eq!(zeros_of([0.0, 2.1]), [1]);
+        assert_eq!(zeros_of([1.1, 0.01]), [2]);
+        // Each joint covers its own error, or no other joint takes over.
+        assert!(zeros_of([0.2, 2.1]).is_empty() && zeros_of([0.0, 1.9]).is_empty());
     }
 }

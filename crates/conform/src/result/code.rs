@@ -95,6 +95,8 @@ codes! {
     Overfitted = "overfitted",
     /// What the fit of the nominal model changed.
     Fitted = "fitted",
+    /// A fit of the nominal model was not taken.
+    FitNotTaken = "fit-not-taken",
     /// Fitted values compensate for model error.
     ParametersMoved = "parameters-moved",
     /// The sets that hold for every run.

@@ -29,13 +29,23 @@ pub(super) fn fit(model: &Model) -> Section {
     let list = |all: Vec<String>| all.join(", ");
     let groups = record.groups.iter();
     let groups = groups.map(|group| format!("{} {}", group.group.name(), cost(group.cost_without)));
-    section.fact("cost without a group", list(groups.collect()));
+    section.fact("cost without a group, the others fitted again", list(groups.collect()));
     let of = |left: &UnseenMotion| format!("{} {}", left.motion, cost(left.cost));
     let each = list(record.leave_one_out.iter().map(of).collect());
     section.fact(
         "cost with one motion left out of the fit",
         format!("{each}; mean {}", cost(record.left_out_mean())),
     );
+    if let [Some(identified), Some(fitted)] = record.carried_over() {
+        section.fact(
+            "cost of the sets without a motion, grown until they enclose it",
+            format!(
+                "mean {}, with the identified model {}",
+                four_decimals(fitted),
+                four_decimals(identified)
+            ),
+        );
+    }
     if let Some(before) = record.identified_calibrated_cost {
         section.fact("cost of calibrated sets with the identified model", four_decimals(before));
     }

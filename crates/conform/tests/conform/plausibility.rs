@@ -33,10 +33,20 @@ struct Written {
     filtered: usize,
     /// The position about which joint 2 moves, rad.
     about: f64,
+    /// What the sensor of joint 1 adds to its torque, N m.
+    offset: f64,
 }
 
-const RIGHT: Written =
-    Written { time: 1.0, angle: 1.0, torque: 1.0, late: 0, swapped: None, filtered: 0, about: 0.0 };
+const RIGHT: Written = Written {
+    time: 1.0,
+    angle: 1.0,
+    torque: 1.0,
+    late: 0,
+    swapped: None,
+    filtered: 0,
+    about: 0.0,
+    offset: 0.0,
+};
 
 /// Motions of the arm with the motor torques that its dynamics need, written in some way.
 fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
@@ -64,6 +74,7 @@ fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
             if let Some((i, j)) = written.swapped {
                 torques.chunks_exact_mut(n).for_each(|row| row.swap(i, j));
             }
+            torques.iter_mut().step_by(n).for_each(|torque| *torque += written.offset);
             torques.rotate_right(n * written.late);
             let torques = averaged(&torques, n, written.filtered);
             let times = times.iter().map(|t| t * written.time).collect();
@@ -218,6 +229,24 @@ fn noise_and_own_starts_are_limited_by_the_sensors() {
             assert!(found.sets.noise_radius(i) <= limit * (1.0 + 1e-6));
         }
     }
+}
+
+#[test]
+fn a_constant_torque_that_the_model_does_not_have_is_remarked() {
+    let of = |offset: f64| {
+        let settings = Settings {
+            nominal: NominalStart::Own,
+            equations: Equations::Robot,
+            ..Settings::new(Torque::Motor, JOINTS)
+        };
+        let (_, found) = found(&Written { offset, ..RIGHT }, settings);
+        let offsets = found.warnings.iter().find(|w| w.kind == WarningKind::InputSetOffset);
+        offsets.map(|warning| (warning.joints.clone(), found.sets.input_set.centre[0]))
+    };
+    let (joints, centre) = of(3.0).unwrap();
+    assert!(joints.contains(&1) && (centre + 3.0).abs() < 0.5, "{joints:?} {centre}");
+    let right = of(0.0);
+    assert!(right.as_ref().is_none_or(|(joints, _)| !joints.contains(&1)), "{right:?}");
 }
 
 #[test]

@@ -23,10 +23,16 @@ impl Finding {
                  notion `hull` only. Otherwise, find sets for the suites of the other motions, and \
                  check the motion that was left out."
             }
-            (false, _) if model.fit.is_some() => {
-                "The sets were found without each motion, for a nominal model that was fitted to \
-                 all. They describe these motions and bound no other."
-            }
+            (false, _) if model.fit.as_ref().is_some_and(|fit| fit.taken) => match is_linear {
+                true => {
+                    "The nominal model was fitted and the sets were found without each motion. \
+                         They describe these motions and bound no other."
+                }
+                false => {
+                    "The sets were found without each motion, for a nominal model that was \
+                         fitted to all. They describe these motions and bound no other."
+                }
+            },
             (false, _) => {
                 "The sets were found without each motion. They describe these motions and bound \
                  no other."

@@ -11,12 +11,15 @@ use crate::result::finding::{Finding, Severity};
 const MOST_FACTOR: f64 = 1.5;
 
 impl Finding {
-    /// What the fit is worth.
+    /// What the fit is worth, or why it was not taken.
     pub(crate) fn fitted(record: &FitRecord, is_linear: bool) -> Self {
+        if !record.taken {
+            return Self::not_taken(record);
+        }
         let FitRecord { pull, identified_cost, cost, .. } = record;
         let text = format!(
             "The nominal model was fitted for small sets: cost{} {} before, {} after ({:+.1} %), \
-             with a pull of {pull} toward the identified values.",
+             a local optimum for a pull of {pull} toward the identified values.",
             if is_linear { "" } else { " of the linear model" },
             four_decimals(*identified_cost),
             four_decimals(*cost),
@@ -26,6 +29,25 @@ impl Finding {
             .with("cost_before", *identified_cost)
             .with("cost", *cost)
             .with("pull", *pull)
+    }
+
+    /// That the model keeps its identified values, since a fit carries over worse to motions that
+    /// were left out of it.
+    fn not_taken(record: &FitRecord) -> Self {
+        let [identified, fitted] = record.carried_over();
+        let size = |cost: Option<f64>| {
+            cost.map_or_else(|| "no factor is enough".into(), |cost| format!("cost {cost:.0}"))
+        };
+        let text = format!(
+            "The fit was not taken: with a motion left out of it, the sets that then grow until \
+             they enclose this motion {} in the mean, and with the identified model {}. Fit to \
+             more motions, or fit fewer groups.",
+            size(fitted),
+            size(identified),
+        );
+        Self::new(Severity::Warning, Code::FitNotTaken, text)
+            .with("identified", identified.unwrap_or(f64::INFINITY))
+            .with("fitted", fitted.unwrap_or(f64::INFINITY))
     }
 
     /// That fitted values are no measurements, and how many compensate for model error; `None` if

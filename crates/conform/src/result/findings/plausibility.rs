@@ -120,9 +120,16 @@ impl From<&Overfit> for Warning {
                 "Calibrated sets cost {fitted:.0} with the fitted nominal model and \
                  {identified:.0} with the identified one"
             ),
-            Overfit::LeftOut => "With a motion left out the fitted nominal model needs larger \
-                                 sets than the identified one"
-                .into(),
+            Overfit::LeftOut { identified, fitted } => {
+                let size = |cost: &Option<f64>| cost.map(|cost| format!("{cost:.0}"));
+                let costs = size(fitted).zip(size(identified));
+                let costs = costs.map(|(fitted, before)| format!(" (cost {fitted}, {before})"));
+                format!(
+                    "With a motion left out the fitted nominal model needs larger sets than the \
+                     identified one{}",
+                    costs.unwrap_or_default()
+                )
+            }
         };
         let text = format!(
             "{fact}: the fit suits its own motions only. Fit to more motions, fit fewer groups, or \

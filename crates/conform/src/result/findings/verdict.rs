@@ -252,6 +252,11 @@ impl Finding {
                     (None, Some(gap)) if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
                     (None, _) => "optimal".into(),
                 };
+                // A fit ends in a local optimum: other nominal models may have smaller sets.
+                let optimal = match &model.fit {
+                    Some(fit) if fit.taken => format!("{optimal} for this nominal model"),
+                    _ => optimal,
+                };
                 // A bound with the digits of the cost is not printed.
                 match four_decimals(bound) {
                     bound if bound == four_decimals(cost) => format!(" ({optimal})"),

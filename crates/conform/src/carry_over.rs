@@ -1,0 +1,43 @@
+//! How a model carries over to a motion that nothing of it has seen.
+
+use crate::data::problem::Problem;
+use crate::error::{Error, Result};
+use crate::fit::fit::fit;
+use crate::fit::group::FitSettings;
+use crate::next_motion::left_out::leave_out;
+use crate::next_motion::motions::Motions;
+use crate::next_motion::without_motion::LeftOut;
+use crate::progress::Progress;
+
+/// Fits the nominal model of a linear model, if `settings` ask for it, and finds the sets without
+/// one motion, and compares the motion with these sets.
+///
+/// The robot of the problem, and the inputs that were computed with it, must not have seen the
+/// motion either: identify the robot without it first. The comparison is a description, computed in
+/// floating point. It bounds no probability.
+///
+/// # Errors
+///
+/// [`Error::Fit`] for a motion that is unknown, or that is the only one; as [`fit`](fn@crate::fit)
+/// and [`conform`](crate::conform); [`Error::NotLinear`] for a model that is not linear.
+pub fn carry_over(
+    problem: &Problem,
+    motion: &str,
+    settings: Option<&FitSettings>,
+    progress: &dyn Progress,
+) -> Result<LeftOut> {
+    let motions = Motions::new(problem.recordings());
+    let all = motions.distinct();
+    if !all.contains(&motion) || all.len() < 2 {
+        return Err(Error::Fit(format!(
+            "motion \"{motion}\" cannot be left out; the motions of the recordings are {}",
+            all.join(", ")
+        )));
+    }
+    let others = problem.with_suites(|suite| motions.of_suite(suite) != motion);
+    let setup = match settings {
+        Some(settings) => fit(&others, settings, progress)?.problem.setup().clone(),
+        None => problem.setup().clone(),
+    };
+    leave_out(&problem.with_setup(setup), motion)
+}

@@ -1,0 +1,55 @@
+//! How a nominal model and its sets carry over to a motion that neither has seen.
+
+use crate::data::settings::NominalStart;
+use crate::error::{Error, Result};
+use crate::fit::evaluation::FitTask;
+use crate::fit::record::UnseenMotion;
+
+/// A motion that is left out of a fit and of its sets.
+pub(crate) struct Unseen<'a> {
+    /// The task at every sample, with what limits the sets of the other motions.
+    pub whole: FitTask<'a>,
+    /// The motion.
+    pub motion: usize,
+}
+
+impl Unseen<'_> {
+    /// Finds the sets of the other motions for `numbers`, and compares the motion with them.
+    ///
+    /// # Errors
+    ///
+    /// As [`FitTask::model`], but for a nominal motion that runs away; as [`Program::solve`].
+    pub(crate) fn compare(&self, numbers: &[f64]) -> Result<UnseenMotion> {
+        let Self { whole, motion } = self;
+        let name = whole.data.motions[*motion].clone();
+        let others = whole.tracks(Some(*motion));
+        let all = whole.tracks(None);
+        let own: Vec<usize> = all.iter().copied().filter(|t| !others.contains(t)).collect();
+        let model = match whole.model(numbers, &all, None) {
+            Err(Error::RunsAway { .. }) => return Ok(UnseenMotion::runs_away(name)),
+            model => model?,
+        };
+        let mut rows = Vec::new();
+        let smallest = whole.smallest_from(&model, &others, &mut rows)?;
+        let cost = whole.smallest_from(&model, &all, &mut rows)?.cost;
+        let program = whole.program(&model, &own);
+        let input_only = whole.settings.nominal == NominalStart::Own;
+        let [_, input, both] = program.growth_factors(&smallest.sets);
+        let growth = if input_only { input } else { both };
+        let of_track = |t: &usize| {
+            let own = whole.program(&model, &[*t]);
+            [own.outside(&smallest.sets), own.rows() / 2]
+        };
+        let [outside, rows] =
+            own.iter().map(of_track).fold([0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+        Ok(UnseenMotion {
+            motion: name,
+            cost: Some(cost),
+            cost_without: Some(smallest.cost),
+            growth,
+            grown_cost: growth.map(|growth| program.cost(&smallest.sets.grown(growth, input_only))),
+            outside: Some(outside),
+            rows,
+        })
+    }
+}
