@@ -9,7 +9,7 @@ fn table_1_is_printed_beside_the_papers() {
     let command = "reproduce table1 --motions 2 --orders 1,6 --model3-up-to 1";
     let text = lab.run(&format!("{command} --out table1.csv")).exits(0).stdout;
     for part in [
-        "2 random point-to-point motions (seed 1) within 1.5708 rad of 0",
+        "2 random point-to-point motions (seed 1) within 1.571 rad of 0",
         "0.0408",
         "-: not simulated",
     ] {
