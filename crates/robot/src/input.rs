@@ -48,8 +48,7 @@ impl Robot {
     }
 
     /// Returns the input (11) \[N m\] for a motor torque on the link side, where the friction of a
-    /// joint near standstill holds it
-    /// ([`Friction::holding_torque`](crate::friction::Friction::holding_torque)).
+    /// joint near standstill holds it.
     ///
     /// [`Robot::input_from_motor_torque`] lets the friction of a joint at rest step from one sign
     /// to the other with the noise of its velocity.
