@@ -1,8 +1,9 @@
 //! An allowance of the sets for motions that were not recorded.
 //!
 //! The smallest sets enclose what was recorded and nothing more. Each motion is left out in turn,
-//! and the sets of the others say how far it leaves them. The radii that cover all of that are
-//! added to the sets before the motions are looked at that were held out of every choice.
+//! and the sets of the others say how far it leaves them. If that is more than what is accepted of
+//! motions that are held out, radii that cover all of it are added to the sets, before the held-out
+//! motions are looked at.
 
 use reachtube_conform::Answer;
 
@@ -33,14 +34,15 @@ impl Widened {
         horizon: f64,
         most: usize,
     ) -> Result<Self> {
-        let run = |recordings: &Prepared| trial.run(recordings.cut(horizon, most)?);
-        if let Some(allowance) = trial.allowance.clone() {
-            return Self::with(run(recordings)?, allowance, "given".into());
-        }
-        let left_out = run(&recordings.in_parts())?;
-        let (allowance, reason) = asked(&left_out);
-        // Parts of motions were left out of sets for the whole.
-        let answer = if recordings.parts.is_some() { run(recordings)? } else { left_out };
+        let answer = trial.run(recordings.cut(horizon, most)?)?;
+        let (allowance, reason) = match trial.allowance.clone() {
+            Some(allowance) => (allowance, "given".into()),
+            // What is held out of repeated recordings is of the same motions.
+            None if recordings.from_start => {
+                (Vec::new(), "for the motions that were recorded".into())
+            }
+            None => asked(&answer, trial.largest_outside),
+        };
         Self::with(answer, allowance, reason)
     }
 
@@ -64,28 +66,29 @@ impl Widened {
 }
 
 /// Returns the allowance that the motions ask for which were left out in turn, rounded up to three
-/// digits, and why; empty if they ask for none.
-fn asked(answer: &Answer) -> (Vec<f64>, String) {
+/// digits, and why; empty if no more than the part `most` of their rows leaves the sets of the
+/// others.
+fn asked(answer: &Answer, most: f64) -> (Vec<f64>, String) {
     let all = &answer.found.left_out;
-    let (rows, outside) = all.iter().fold((0, 0), |(rows, outside), left| {
-        (rows + left.rows, outside + left.outside.unwrap_or_default())
-    });
-    let part = format!("{:.1} %", 100.0 * outside as f64 / rows.max(1) as f64);
+    if all.len() < 2 {
+        return (Vec::new(), "there is a single motion or part".into());
+    }
+    let rows: usize = all.iter().map(|left| left.rows).sum();
+    let outside: usize = all.iter().filter_map(|left| left.outside).sum();
+    let part = outside as f64 / rows.max(1) as f64;
+    let leave = format!(
+        "of {} motions or parts left out in turn, {:.1} % of the rows leave the sets of the others",
+        all.len(),
+        100.0 * part
+    );
     match &answer.found.allowance_needed {
-        _ if all.len() < 2 => (Vec::new(), "there is a single motion or part".into()),
-        None => {
-            (Vec::new(), format!("no allowance encloses {part} of the rows of motions left out"))
+        _ if part <= most => {
+            (Vec::new(), format!("{leave}; at most {} % is accepted", 100.0 * most))
         }
-        Some(allowance) if allowance.iter().all(|radius| *radius == 0.0) => {
-            (Vec::new(), format!("each of {} parts lies in the sets of the others", all.len()))
-        }
+        None => (Vec::new(), format!("{leave}, and no allowance encloses them")),
         Some(allowance) => {
-            let reason = format!(
-                "of {} motions or parts left out in turn, {part} of the rows leave the sets of \
-                 the others; with the allowance none do",
-                all.len()
-            );
-            (allowance.iter().map(|radius| rounded_up(*radius)).collect(), reason)
+            let allowance = allowance.iter().map(|radius| rounded_up(*radius)).collect();
+            (allowance, format!("{leave}; with the allowance none do"))
         }
     }
 }
@@ -154,7 +157,7 @@ mod tests {
                      inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
         let robot = Robot::from_toml(robot, "pendulum").unwrap();
         let all = [("a", 0.1), ("b", 0.2), ("c", 0.3)];
-        let (allowance, reason) = asked(&answer(&robot, &all));
+        let (allowance, reason) = asked(&answer(&robot, &all), 0.0);
         assert_eq!(allowance[..2], [0.0; 2], "the noise limits X0");
         assert!(allowance[2] > 0.01, "{allowance:?}, {reason}");
         let mut outside = 0;
@@ -169,6 +172,7 @@ mod tests {
             assert!(check.holds(), "{}: {:?}", all[left_out].0, check.verdict.violations);
         }
         assert!(outside > 0, "without the allowance some motion leaves the sets");
+        assert!(asked(&answer(&robot, &all), 1.0).0.is_empty(), "all rows may leave the sets");
         let wrong = answer(&robot, &all).widened(vec![0.0; 2]).unwrap_err().to_string();
         assert!(wrong.contains("allowance"), "{wrong}");
     }

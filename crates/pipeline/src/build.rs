@@ -124,15 +124,8 @@ impl Decided<'_> {
         findings.extend(unknown_motors(&robot, torque));
         let mut trial = Trial { robot: robot.clone(), ..trial.clone() };
         let (motions, from_start) = (split.motion_names(), torque == Torque::Compensated);
-        let parts = split.parts();
-        let recordings = Prepared {
-            logs: &logs,
-            motions: &motions,
-            parts: parts.as_ref(),
-            from_start,
-            simulated,
-            origins: None,
-        };
+        let recordings =
+            Prepared { logs: &logs, motions: &motions, from_start, simulated, origins: None };
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
         let choices = &chooser.choices;
@@ -217,6 +210,7 @@ fn first_choices<'a, 'b: 'a>(
         equations,
         nominal,
         allowance,
+        largest_outside: chooser.choices.largest_outside(),
         fit,
         progress,
         journal,

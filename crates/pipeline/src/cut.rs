@@ -64,14 +64,8 @@ impl Cut {
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         let origins = &origins_of(&raw);
         let origins = Some(origins);
-        let prepared = Prepared {
-            logs: &logs,
-            motions: &motions,
-            parts: None,
-            from_start: false,
-            simulated,
-            origins,
-        };
+        let prepared =
+            Prepared { logs: &logs, motions: &motions, from_start: false, simulated, origins };
         let windows = prepared.cut(horizon, usize::MAX)?;
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));

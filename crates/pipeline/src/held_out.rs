@@ -16,9 +16,6 @@ const ONE_IN: usize = 4;
 const FEW: usize = 8;
 const REPEATS: usize = 4;
 
-/// Parts into which the recordings of each motion are dealt, to leave each part out in turn.
-const PARTS: usize = 3;
-
 /// The part of a single motion that is used; the rest is held out.
 const PART_OF_ONE: f64 = 0.75;
 
@@ -97,19 +94,6 @@ impl Split {
     pub(crate) fn motion_names(&self) -> BTreeMap<String, String> {
         let all = self.kept.iter().chain(&self.held_out);
         all.map(|recording| (recording.log.name.clone(), recording.motion.clone())).collect()
-    }
-
-    /// Returns the part of its motion that each recording belongs to that is not held out, if
-    /// recordings are held out in place of motions.
-    pub(crate) fn parts(&self) -> Option<BTreeMap<String, String>> {
-        let are_recordings = self.held_out_motions().is_none() && !self.names.is_empty();
-        let part = |(index, recording): (usize, &Recording)| {
-            let before = self.kept[..index].iter();
-            let same = before.filter(|other| other.motion == recording.motion).count();
-            let part = format!("{} part {}", recording.motion, 1 + same % PARTS);
-            (recording.log.name.clone(), part)
-        };
-        are_recordings.then(|| self.kept.iter().enumerate().map(part).collect())
     }
 
     /// Holds out the end of each recording of a single motion.
@@ -231,8 +215,6 @@ mod tests {
         let split = Split::new(all.clone(), None).unwrap();
         assert_eq!((&split.names[..], split.kept.len()), (&["a3".into(), "b7".into()][..], 6));
         assert_eq!(split.held_out_motions(), None);
-        let parts: Vec<String> = split.parts().unwrap().into_values().collect();
-        assert_eq!(parts, ["a part 1", "a part 2", "a part 3", "b part 1", "b part 2", "b part 3"]);
         let again = Split::new(all, Some(&split.names)).unwrap();
         assert_eq!(again.held_out.len(), 2);
     }

@@ -34,8 +34,7 @@ pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> 
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
     let origins = &origins_of(&raw);
     let origins = Some(origins);
-    let prepared =
-        Prepared { logs: &logs, motions: &motions, parts: None, from_start, simulated, origins };
+    let prepared = Prepared { logs: &logs, motions: &motions, from_start, simulated, origins };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),

@@ -207,7 +207,6 @@ impl Evidence<'_> {
         let recordings = Prepared {
             logs: &nominal.logs,
             motions: &none,
-            parts: None,
             from_start: false,
             simulated: false,
             origins: None,

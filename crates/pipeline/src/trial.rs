@@ -26,6 +26,8 @@ pub(crate) struct Trial<'a> {
     pub nominal: NominalStart,
     /// What is added to the radii of X0 and U, 3n, if it is given.
     pub allowance: Option<Vec<f64>>,
+    /// The part of the rows of motions left out that may leave the sets without an allowance.
+    pub largest_outside: f64,
     /// What is fitted.
     pub fit: Option<FitSettings>,
     /// Who may cancel the job.

@@ -17,9 +17,6 @@ pub(crate) struct Prepared<'a> {
     pub logs: &'a [PreparedLog],
     /// The motion of each, by its name.
     pub motions: &'a BTreeMap<String, String>,
-    /// The part of a motion that each recording belongs to, where parts are left out in turn in
-    /// place of motions.
-    pub parts: Option<&'a BTreeMap<String, String>>,
     /// Whether a recording counts from its start, and recordings of a motion are one suite, as
     /// where inputs were commanded; else each is cut into windows, which are suites of their own.
     pub from_start: bool,
@@ -30,11 +27,6 @@ pub(crate) struct Prepared<'a> {
 }
 
 impl Prepared<'_> {
-    /// Returns the recordings with their parts as motions, where parts are left out in turn.
-    pub(crate) fn in_parts(&self) -> Self {
-        Self { motions: self.parts.unwrap_or(self.motions), ..*self }
-    }
-
     /// Cuts recordings at `horizon` \[s\], at most `most` windows of them evenly spread. The
     /// windows of a single motion belong to four parts of it.
     ///
