@@ -99,7 +99,8 @@ impl Basis {
     ///
     /// # Errors
     ///
-    /// As [`Setup::new`]; an abstraction that does not fit the settings; a robot that is not physical.
+    /// As [`Setup::new`]; an abstraction that does not fit the settings; a robot that is not
+    /// physical.
     pub fn setup(self, settings: Settings, explain: Option<Option<Tolerance>>) -> Result<Setup> {
         let setup = match self {
             Self::Robot(robot) => {
