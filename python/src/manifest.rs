@@ -22,6 +22,7 @@ pub(crate) fn entry(row: &Entry) -> RunEntry {
         sha256,
         simulated: false,
         noise: None,
+        origin: None,
         order,
         line: index + 1,
     }
