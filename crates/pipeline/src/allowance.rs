@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn with_the_margin_the_sets_of_the_others_enclose_each_motion() {
+    fn with_the_allowance_the_sets_of_the_others_enclose_each_motion() {
         let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
                      placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
                      mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn margins_are_rounded_up_to_three_digits() {
+    fn allowances_are_rounded_up_to_three_digits() {
         assert_eq!([0.0, 1.2301e-3, 1.25, 98.71].map(rounded_up), [0.0, 1.24e-3, 1.25, 98.8]);
     }
 }
