@@ -15,7 +15,7 @@ use crate::data::side::Side;
 /// envelope.include(7, &[1.0, 5.0]);
 /// envelope.include(8, &[2.0, 3.0]);
 /// assert_eq!((envelope.upper(0, 0), envelope.upper(1, 0)), (2.0, 5.0));
-/// assert_eq!((envelope.upper_run(0, 0), envelope.upper_run(1, 0)), (8, 7));
+/// assert_eq!((envelope.lower(0, 0), envelope.lower(1, 0)), (1.0, 3.0));
 /// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Envelope {
