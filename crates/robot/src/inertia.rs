@@ -35,17 +35,6 @@ impl LinkInertia {
 
     /// Makes a link from its centre of mass \[m\] and its inertia tensor about that point
     /// \[kg m²\], in the frame's axes.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use nalgebra::{Matrix3, Vector3};
-    /// use reachtube_robot::LinkInertia;
-    ///
-    /// // A point mass of 2 kg at 0.5 m.
-    /// let link = LinkInertia::about_com(2.0, Vector3::new(0.5, 0.0, 0.0), &Matrix3::zeros());
-    /// assert_eq!(link.tensor()[(2, 2)], 0.5);
-    /// ```
     pub(crate) fn about_com(mass: f64, com: Vector3<f64>, inertia: &Matrix3<f64>) -> Self {
         let h = mass * com;
         let mut link = Self::about_origin(mass, h, inertia);
@@ -123,5 +112,17 @@ impl LinkInertia {
     pub fn from_parameters(p: &[f64; INERTIAL]) -> Self {
         let tensor = Matrix3::new(p[4], p[5], p[7], p[5], p[6], p[8], p[7], p[8], p[9]);
         Self::about_origin(p[0], Vector3::new(p[1], p[2], p[3]), &tensor)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_mass_has_its_moment_about_the_origin() {
+        // 2 kg at 0.5 m.
+        let link = LinkInertia::about_com(2.0, Vector3::new(0.5, 0.0, 0.0), &Matrix3::zeros());
+        assert_eq!(link.tensor()[(2, 2)], 0.5);
     }
 }
