@@ -300,13 +300,21 @@ fn point(q: &[f64]) -> String {
 }
 
 fn percent(part: f64) -> String {
-    format!("{:.0} %", 100.0 * part.min(1.0))
+    match part {
+        ..0.01 => "less than 1 %".into(),
+        _ => format!("{:.0} %", 100.0 * part.min(1.0)),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::result::front_end::FrontEnd;
+
+    #[test]
+    fn a_small_part_is_not_printed_as_none() {
+        assert_eq!([0.004, 0.02, 7.0].map(percent), ["less than 1 %", "2 %", "100 %"]);
+    }
 
     #[test]
     fn a_cause_names_its_remedy_as_data() {
