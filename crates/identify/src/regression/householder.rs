@@ -101,7 +101,7 @@ mod tests {
         let below = (0..r.nrows()).flat_map(|i| (0..i).map(move |j| (i, j)));
         r.shape() == (matrix.nrows().min(matrix.ncols()), matrix.ncols())
             && below.clone().all(|at| r[at] == 0.0)
-            && r.diagonal().iter().all(|x| *x >= 0.0)
+            && (0..r.nrows()).all(|i| r[(i, i)] >= 0.0)
             && (r.tr_mul(r) - matrix.tr_mul(matrix)).amax() < 1e-11
     }
 
