@@ -50,7 +50,9 @@ impl Answer {
             }
         };
         // A fit has left the rows of each motion out already, also out of the nominal model.
-        let left_out = left_out.filter(|_| !problem.settings().notion.asks_points());
+        let is_linear = problem.dynamics().linear_system().is_some();
+        let asks_rows = is_linear && !problem.settings().notion.asks_points();
+        let left_out = left_out.filter(|_| asks_rows);
         let found = conform_fitted(&problem, left_out, progress, resume)?;
         Ok(Self { model: Self::model(&problem, &found, record), problem, found })
     }

@@ -30,8 +30,8 @@ pub struct Fitted {
     pub problem: Problem,
     /// How the model was fitted.
     pub record: FitRecord,
-    /// The motions that were left out of the fit and of the sets of a linear model, if the fit was
-    /// taken.
+    /// The motions that were left out of the fit and of the sets of the linear model, if the fit
+    /// was taken.
     pub(crate) left_out: Option<LeftOutMotions>,
 }
 
@@ -106,8 +106,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
     }
     let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
-    let linear = problem.dynamics().linear_system();
-    let left_out = linear.map(|_| LeftOutMotions::from(&choice));
+    let left_out = Some(LeftOutMotions::from(&choice));
     let mut record = record(&fit, choice, Some(&found.numbers), costs)?;
     record.identified_calibrated_cost = calibrated_cost(problem);
     // The numbers go to the model that was asked for, with all motions.
