@@ -14,9 +14,9 @@ use crate::sets::UncertaintySets;
 /// Rounds at most.
 const ROUNDS: usize = 60;
 
-/// Returns the least factor, from `rows` on, with which the sets `grown` hold the recorded points of
-/// a problem with a linear model; `rows` itself where the notion asks no points, and `None` if no
-/// factor was found.
+/// Returns the least factor, from `rows` on, with which the sets `grown` hold the recorded points
+/// of a problem with a linear model. Returns `rows` itself where the notion asks no points, and
+/// `None` if no factor was found.
 ///
 /// A point outside shows a direction, and by which factor the set must grow there at least. The
 /// largest of these is tried next, so that the factors rise to the answer from below.

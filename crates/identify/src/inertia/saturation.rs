@@ -177,7 +177,7 @@ fn gram(rows: &[[f64; 3]], speed: f64) -> DMatrix<f64> {
     gram
 }
 
-/// Returns the best speed's index and solution, among those that dissipate and build up.
+/// Returns the best speed's index and solution, among friction that dissipates and builds up.
 fn best(grams: &[DMatrix<f64>]) -> Option<(usize, DVector<f64>)> {
     let fits = grams.iter().enumerate().filter_map(|(at, gram)| {
         let solved = CHOICES.into_iter().filter_map(|columns| solve(gram, columns));
