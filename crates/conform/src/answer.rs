@@ -5,10 +5,10 @@ use std::path::Path;
 use crate::check::Check;
 use crate::claim::certificate::Certificate;
 use crate::claim::remote::PointServer;
-use crate::conformance::{Conformance, conform, conform_elsewhere};
+use crate::conformance::{Conformance, conform_elsewhere, conform_fitted};
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::fit::fit::fit;
+use crate::fit::fit::{Fitted, fit};
 use crate::fit::group::FitSettings;
 use crate::fit::record::FitRecord;
 use crate::model::file::Model;
@@ -42,14 +42,18 @@ impl Answer {
         resume: Option<&Path>,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let (problem, record) = match fit {
-            None => (problem, None),
+        let (problem, record, left_out) = match fit {
+            None => (problem, None, None),
             Some(settings) => {
-                let fitted = self::fit(&problem, settings, progress)?;
-                (fitted.problem, Some(fitted.record))
+                let Fitted { problem, record, left_out } = self::fit(&problem, settings, progress)?;
+                (problem, Some(record), left_out)
             }
         };
-        let found = conform(&problem, progress, resume)?;
+        // A fit has left the rows of each motion out already, also out of the nominal model.
+        let is_linear = problem.dynamics().linear_system().is_some();
+        let asks_rows = is_linear && !problem.settings().notion.asks_points();
+        let left_out = left_out.filter(|_| asks_rows);
+        let found = conform_fitted(&problem, left_out, progress, resume)?;
         Ok(Self { model: Self::model(&problem, &found, record), problem, found })
     }
 

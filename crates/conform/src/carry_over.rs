@@ -6,11 +6,13 @@ use crate::fit::fit::fit;
 use crate::fit::group::FitSettings;
 use crate::next_motion::left_out::leave_out;
 use crate::next_motion::motions::Motions;
+use crate::next_motion::point_gauge::leave_points_out;
 use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 
 /// Fits the nominal model of a linear model, if `settings` ask for it, and finds the sets without
-/// one motion, and compares the motion with these sets.
+/// one motion, and compares the motion with these sets: its rows, or its points where the notion
+/// asks them. A fit is steered by the rows in any notion.
 ///
 /// The robot of the problem, and the inputs that were computed with it, must not have seen the
 /// motion either: identify the robot without it first. The comparison is a description, computed in
@@ -39,5 +41,9 @@ pub fn carry_over(
         Some(settings) => fit(&others, settings, progress)?.problem.setup().clone(),
         None => problem.setup().clone(),
     };
-    leave_out(&problem.with_setup(setup), motion)
+    let problem = problem.with_setup(setup);
+    match problem.settings().notion.asks_points() {
+        true => leave_points_out(&problem, motion),
+        false => leave_out(&problem, motion),
+    }
 }

@@ -114,7 +114,26 @@ pub fn conform(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem, None)?, progress, resume)
+    conform_claim(problem, &*claim(problem, None)?, None, (progress, resume))
+}
+
+/// Does what [`conform`] does for the problem of a fit, which left motions out of both the nominal
+/// model and the sets.
+///
+/// # Guarantee
+///
+/// As [`conform`].
+///
+/// # Errors
+///
+/// As [`conform`].
+pub(crate) fn conform_fitted(
+    problem: &Problem,
+    left_out: Option<LeftOutMotions>,
+    progress: &dyn Progress,
+    resume: Option<&Path>,
+) -> Result<Conformance> {
+    conform_claim(problem, &*claim(problem, None)?, left_out, (progress, resume))
 }
 
 /// Does what [`conform`] does for the problem of a fold whose points `server` asks: the notions
@@ -132,19 +151,19 @@ pub fn conform_elsewhere(
     server: &dyn PointServer,
     progress: &dyn Progress,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem, Some(server))?, progress, None)
+    conform_claim(problem, &*claim(problem, Some(server))?, None, (progress, None))
 }
 
 fn conform_claim(
     problem: &Problem,
     claim: &dyn Claim,
-    progress: &dyn Progress,
-    resume: Option<&Path>,
+    left_out: Option<LeftOutMotions>,
+    how: (&dyn Progress, Option<&Path>),
 ) -> Result<Conformance> {
     let (found, calibration) = if problem.settings().calibrate.is_empty() {
-        (smallest_sets(problem, claim, progress, resume)?, None)
+        (smallest_sets(problem, claim, left_out, how)?, None)
     } else {
-        let (found, calibration) = calibrate(problem, progress, resume)?;
+        let (found, calibration) = calibrate(problem, left_out, how)?;
         (found, Some(calibration))
     };
     judged(problem, found, calibration, Vec::new())

@@ -23,7 +23,7 @@ struct Without<'a> {
 }
 
 /// Motions that were left out, beside the sets of the others.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct LeftOutMotions {
     /// Each motion.
     pub each: Vec<LeftOut>,
@@ -102,7 +102,7 @@ pub(crate) fn leave_each_out(
 }
 
 /// Returns the rows that any comparison misses, each by the most that it misses.
-fn merged(all: Vec<Missing>) -> Missing {
+pub(crate) fn merged(all: Vec<Missing>) -> Missing {
     let mut merged = Missing::new();
     for (row, (excess, gains)) in all.into_iter().flatten() {
         let own = merged.entry(row).or_insert((0.0, gains));
@@ -111,7 +111,8 @@ fn merged(all: Vec<Missing>) -> Missing {
     merged
 }
 
-/// Finds the sets of the other motions of a linear model, and compares `motion` with them.
+/// Finds the sets of the other motions of a linear model, and compares the rows of `motion` with
+/// them.
 ///
 /// # Errors
 ///

@@ -10,6 +10,7 @@ pub(crate) mod growth;
 pub(crate) mod left_out;
 pub(crate) mod motions;
 mod outer_gauge;
+pub(crate) mod point_gauge;
 pub(crate) mod rates;
 pub(crate) mod trends;
 pub(crate) mod trust;
