@@ -4,6 +4,7 @@ use crate::data::problem::Problem;
 use crate::error::{Error, Result};
 use crate::fit::fit::fit;
 use crate::fit::group::FitSettings;
+use crate::next_motion::allowance::factor_for;
 use crate::next_motion::left_out::leave_out;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::without_motion::LeftOut;
@@ -14,7 +15,8 @@ use crate::progress::Progress;
 ///
 /// The robot of the problem, and the inputs that were computed with it, must not have seen the
 /// motion either: identify the robot without it first. The comparison is a description, computed in
-/// floating point. It bounds no probability.
+/// floating point. It bounds no probability. Returns the factor of `allowance` too, radii of X0 and
+/// U, 3n, that encloses the motion once it is added to these sets; `None` if no factor does.
 ///
 /// # Errors
 ///
@@ -24,8 +26,9 @@ pub fn carry_over(
     problem: &Problem,
     motion: &str,
     settings: Option<&FitSettings>,
+    allowance: &[f64],
     progress: &dyn Progress,
-) -> Result<LeftOut> {
+) -> Result<(LeftOut, Option<f64>)> {
     let motions = Motions::new(problem.recordings());
     let all = motions.distinct();
     if !all.contains(&motion) || all.len() < 2 {
@@ -39,5 +42,6 @@ pub fn carry_over(
         Some(settings) => fit(&others, settings, progress)?.problem.setup().clone(),
         None => problem.setup().clone(),
     };
-    leave_out(&problem.with_setup(setup), motion)
+    let (left_out, missing) = leave_out(&problem.with_setup(setup), motion)?;
+    Ok((left_out, missing.and_then(|missing| factor_for(&missing, allowance))))
 }

@@ -3,6 +3,7 @@
 mod acceptance;
 mod allowance;
 mod build;
+mod carried_over;
 mod choices;
 mod chooser;
 mod compared;
@@ -20,6 +21,7 @@ mod mean_position;
 mod motors;
 mod noise;
 mod plausible;
+mod prediction;
 mod prepared;
 mod remedies;
 mod robot;
