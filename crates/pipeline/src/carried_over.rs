@@ -5,27 +5,19 @@ use std::collections::BTreeSet;
 
 use reachtube_conform::next_motion::LeftOut;
 use reachtube_conform::{Answer, FitSettings, carry_over};
-use reachtube_identify::prepare::PreparedLog;
 use reachtube_robot::Robot;
 
 use crate::error::{Error, Result};
+use crate::fold::Fold;
 use crate::robot::{Evidence, Nominal};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
-/// The robot is identified at most so many times more. With more motions, some are left out
-/// together.
+/// Number of further identifications at most. With more motions, some are left out together.
 const FOLDS: usize = 8;
 
 /// Most motions that are left out in turn. One of more motions hardly changes a robot.
 const MOST_MOTIONS: usize = 60;
-
-/// A robot that was identified without some motions, and all recordings prepared for it.
-pub(crate) struct Fold {
-    pub motions: Vec<String>,
-    pub robot: Robot,
-    pub logs: Vec<PreparedLog>,
-}
 
 /// A motion beside a model that has not seen it.
 #[derive(Debug, Clone)]

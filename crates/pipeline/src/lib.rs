@@ -12,6 +12,7 @@ mod cut;
 mod error;
 mod files;
 mod findings;
+mod fold;
 mod held_out;
 mod horizon;
 mod joint_row;

@@ -73,7 +73,7 @@ impl Evidence<'_> {
         let (mut contradictions, explained) = self.contradictions(described)?;
         let chosen = self.chosen(described, given);
         let mut chosen = chosen.map_err(|error| error.because(&contradictions))?;
-        // Of another robot's description, an identification blames columns.
+        // An identification blames columns if the description is of another robot.
         let is_wrong = chosen.findings.iter().any(|other| other.severity == Severity::Failure);
         if is_wrong && contradictions.is_empty() {
             contradictions.extend(explained.and_then(Explained::finding));

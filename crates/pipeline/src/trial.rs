@@ -8,8 +8,8 @@ use reachtube_recordings::{MemoryRuns, Torque};
 use reachtube_robot::Robot;
 use sha2::{Digest, Sha256};
 
-use crate::carried_over::Fold;
 use crate::error::Result;
+use crate::fold::Fold;
 use crate::journal::Journal;
 
 /// What a conformance over windows needs besides the windows.

@@ -192,7 +192,7 @@ fn rewrite(lab: &Lab, folder: &Path, change: &dyn Fn(&mut [f64], usize, usize)) 
 /// Changes one row of a recording, with its number and the number of joints.
 type Change<'a> = &'a dyn Fn(&mut [f64], usize, usize);
 
-/// What is wrong with recordings that are otherwise those of a robot: the cause that is named, the
+/// What is wrong with recordings that are otherwise right: the cause that is named, the
 /// exit code, and the change.
 const WRONG: [(&str, i32, Change); 9] = [
     ("the times look like milliseconds", 2, &|row, _, _| row[0] *= 1e3),

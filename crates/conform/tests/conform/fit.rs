@@ -312,7 +312,7 @@ fn motions_are_left_out_of_the_fit_as_a_calibration_leaves_them_out() {
         let unseen = &record.leave_one_out[motion];
         let again = gauge(&fitted(&held_out, &groups, Some(0.001)).problem);
         assert!((unseen.growth.unwrap() / again - 1.0).abs() < 0.05, "{unseen:?}, {again}");
-        let one = [0.0, 0.0, 0.0, 0.0, 1.0, 1.0];
+        let one = [1.0; 6];
         let (carried, factor) = carry_over(&all, name, None, &one, &Silent).unwrap();
         assert_eq!(factor > Some(0.0), carried.outside > Some(0), "{factor:?}, {carried:?}");
         assert!((carried.gauge.unwrap() / identified - 1.0).abs() < 1e-6, "{carried:?}");
