@@ -12,6 +12,7 @@ use crate::fit::fit::{Fitted, fit};
 use crate::fit::group::FitSettings;
 use crate::fit::record::FitRecord;
 use crate::model::file::Model;
+use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
 use crate::result::finding::Finding;
@@ -90,6 +91,14 @@ impl Answer {
         let Self { problem, found, model } = self;
         let found = found.widened(&problem, allowance)?;
         Ok(Self { model: Self::model(&problem, &found, model.fit), problem, found })
+    }
+
+    /// Replaces how motions lie to a model without them, such as by what
+    /// [`carry_over`](crate::carry_over) finds for models that have seen less of them.
+    #[must_use]
+    pub fn with_left_out(mut self, left_out: Vec<LeftOut>) -> Self {
+        self.found.left_out.clone_from(&left_out);
+        Self { model: self.model.with_left_out(left_out), ..self }
     }
 
     /// Returns whether the sets were proved to enclose every recording.

@@ -11,7 +11,7 @@ use crate::fit::search::SearchEffort;
 use crate::fit::unseen::Unseen;
 use crate::fit::working_set::Wanted;
 use crate::next_motion::allowance::Missing;
-use crate::next_motion::left_out::{LeftOutMotions, merged};
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::without_motion::LeftOut;
 use crate::program::layout::Limits;
 
@@ -24,9 +24,9 @@ pub(crate) struct PullChoice {
     pub pull: f64,
     /// How the model that was fitted without each motion carries over to it.
     pub left_out: Vec<UnseenMotion>,
-    /// The rows of motions that lie beyond the sets that were found without them; `None` if a
+    /// The rows of each motion that lie beyond the sets that were found without it; `None` if a
     /// nominal motion runs away.
-    pub missing: Option<Missing>,
+    pub missing: Option<Vec<Missing>>,
     /// How the identified model carries over to each motion.
     pub identified: Vec<UnseenMotion>,
     /// The mean costs for each weight that was tried.
@@ -159,7 +159,7 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
         None => best.drop_groups(&folds, &fit.parameters.groups())?,
     };
     let Folded { mean: PullCost { pull, .. }, left_out, missing, .. } = best;
-    let missing = missing.into_iter().collect::<Option<_>>().map(merged);
+    let missing = missing.into_iter().collect();
     Ok(PullChoice { pull, left_out, missing, identified, tried, dropped })
 }
 

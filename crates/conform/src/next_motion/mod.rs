@@ -16,6 +16,7 @@ pub(crate) mod trends;
 pub(crate) mod trust;
 pub(crate) mod without_motion;
 
+pub use allowance::AllowanceNeeded;
 pub use any_run::AnyRun;
 pub use calibration::{Calibration, Gauge};
 pub use deciding_runs::{DecidingRun, DecidingRuns};

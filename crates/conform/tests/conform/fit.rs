@@ -313,16 +313,18 @@ fn motions_are_left_out_of_the_fit_as_a_calibration_leaves_them_out() {
         let unseen = &record.leave_one_out[motion];
         let again = gauge(&fitted(&held_out, &groups, Some(0.001)).problem);
         assert!((unseen.growth.unwrap() / again - 1.0).abs() < 0.05, "{unseen:?}, {again}");
-        let carried = carry_over(&all, name, None, &Silent).unwrap();
+        let one = [1.0; 6];
+        let (carried, factor) = carry_over(&all, name, None, &one, &Silent).unwrap();
+        assert_eq!(factor > Some(0.0), carried.outside > Some(0), "{factor:?}, {carried:?}");
         assert!((carried.gauge.unwrap() / identified - 1.0).abs() < 1e-6, "{carried:?}");
         let settings = FitSettings { groups: groups.to_vec(), pull: Some(0.001) };
-        let carried = carry_over(&all, name, Some(&settings), &Silent).unwrap();
+        let (carried, _) = carry_over(&all, name, Some(&settings), &one, &Silent).unwrap();
         assert!((carried.gauge.unwrap() / again - 1.0).abs() < 1e-6, "{carried:?}, {again}");
         // The model reports this growth, not the growth for a fit that has seen the motion.
         assert_eq!(model.left_out[motion].gauge, unseen.growth);
         assert_eq!(model.left_out[motion].outside, unseen.outside);
     }
-    let unknown = carry_over(&all, "motion7", None, &Silent).unwrap_err().to_string();
+    let unknown = carry_over(&all, "motion7", None, &[1.0; 6], &Silent).unwrap_err().to_string();
     assert!(unknown.contains("motion0, motion1, motion2"), "{unknown}");
 }
 

@@ -113,7 +113,8 @@ fn points_calibrate_sets_by_the_factor_that_holds_them() {
         let names = ["a", "b", "d"];
         let plain = Settings { calibrate: vec![], ..settings.clone() };
         let with_d = read(&two_joints(), folder.path(), &names, &plain);
-        let left = carry_over(&with_d, "d", None, &Silent).unwrap();
+        let one = [1.0; 6];
+        let (left, _) = carry_over(&with_d, "d", None, &one, &Silent).unwrap();
         let gauge = calibration.gauges.iter().find(|gauge| gauge.motion == "d").unwrap().gauge;
         assert!((left.gauge.unwrap() / gauge - 1.0).abs() < 1e-3, "{left:?} for {gauge}");
         assert!(left.outside.unwrap() > 0);
