@@ -86,7 +86,7 @@ impl Trial<'_> {
             let groups = settings.groups.iter().filter(|group| !record.dropped.contains(group));
             FitSettings { pull: Some(record.pull), groups: groups.copied().collect() }
         });
-        for fold in &self.folds {
+        for fold in self.folds {
             let wanted: BTreeSet<&str> = fold.motions.iter().map(String::as_str).collect();
             let Fold { robot, logs, .. } = fold;
             let trial = Trial { robot: robot.clone(), ..self.clone() };
