@@ -9,7 +9,7 @@ use reachtube_robot::{JointKind, Robot};
 use reachtube_scalar::number::{at_least, significant};
 use reachtube_verify::{AnnexRow, Brakes, StopStudy, annex_table, recorded_table};
 
-use crate::chart::{Chart, Series, charts_svg};
+use crate::chart::{Chart, Series, chart_svg};
 use crate::error::Error;
 use crate::skeleton::{document, section, wide_table};
 use crate::text::Text;
@@ -175,11 +175,10 @@ fn charts(rows: &[AnnexRow], unit: &str) -> Result<Markup, Error> {
         joints.iter().map(|joint| chart(joint, format!("distance [{unit}]"), |row| row.way));
     let times = joints.iter().map(|joint| chart(joint, "time [s]".into(), |row| row.time));
     let all: Vec<Chart> = distances.chain(times).collect();
-    let label = "Proved stopping distance and time over speed";
-    let svg = charts_svg(&all, joints.len().max(1), label)?;
+    let svgs: Vec<String> = all.iter().map(chart_svg).collect::<Result<_, Error>>()?;
     Ok(html! {
         figure {
-            div.wide { (PreEscaped(svg)) }
+            div.charts { @for svg in &svgs { div.stack { (PreEscaped(svg)) } } }
             figcaption {
                 "At " (format!("{:.0} %", 100.0 * load)) " of the load. Grey: 33 % of the \
                  extension, blue: 66 %, orange: 100 %."

@@ -100,7 +100,7 @@ fn the_page_has_the_table_of_iso_10218_and_no_script() {
     assert_eq!(full, 2 + 2 * 3, "{text}");
     let page = lab.read("stops/stop.html");
     assert!(page.contains("ISO 10218-1, Annex B") && page.contains("two axes"));
-    assert!(!page.contains("<script") && page.matches("<svg").count() == 5, "{}", page.len());
+    assert!(!page.contains("<script") && page.matches("<svg").count() == 4, "{}", page.len());
     assert!(page.contains("0.5 kg at 0.3, 0, 0 m"), "{page}");
     lab.write("stops/stop.html", "mine");
     lab.run(&format!("{STOP} --out stops")).fails_with_last(&["stop.html", "--force"]);
