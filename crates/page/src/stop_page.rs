@@ -119,14 +119,13 @@ fn laid_out(table: &Table) -> Markup {
     wide_table("sets", &capital(&table.title), &head, &rows)
 }
 
-/// Returns the rows of category 1, those that differ only in speed on one line.
+/// Returns the rows of category 1; rows that differ only in speed share a line.
 fn by_speed(rows: &[AnnexRow], unit: &str) -> Table {
     let head = |what: &str| SPEEDS.map(|part| format!("{what} at {:.0} %", 100.0 * part));
     let names = ["joint", "extension", "load"].map(String::from);
     let header = names.into_iter().chain(head(&format!("[{unit}]"))).chain(head("[s]"));
-    let lines = rows.chunk_by(|a, b| {
-        (&a.joint, a.extension, a.load) == (&b.joint, b.extension, b.load)
-    });
+    let lines =
+        rows.chunk_by(|a, b| (&a.joint, a.extension, a.load) == (&b.joint, b.extension, b.load));
     let line = |line: &[AnnexRow]| {
         let bound = |value: f64| if value.is_finite() { at_least(value) } else { "none".into() };
         let first = &line[0];
@@ -137,7 +136,8 @@ fn by_speed(rows: &[AnnexRow], unit: &str) -> Table {
         cells
     };
     Table {
-        title: "Proved stopping distances and times at 33, 66 and 100 % of the greatest speed".into(),
+        title: "Proved stopping distances and times at 33, 66 and 100 % of the greatest speed"
+            .into(),
         ..Table::new(header, lines.map(line).collect())
     }
 }
@@ -154,9 +154,9 @@ fn charts(rows: &[AnnexRow], unit: &str) -> Result<Markup, Error> {
     let chart = |joint: &str, y: String, value: fn(&AnnexRow) -> f64| {
         let of_extension = |(k, colour): (usize, [u8; 3])| {
             let extension = SPEEDS[k];
-            let chosen = rows.iter().filter(|row| {
-                row.joint == joint && row.load == load && row.extension == extension
-            });
+            let chosen = rows
+                .iter()
+                .filter(|row| row.joint == joint && row.load == load && row.extension == extension);
             let proved = chosen.filter(|row| row.is_proved());
             let points = proved.map(|row| (100.0 * row.speed, value(row))).collect();
             Series { points, dots: false, colour }
@@ -190,9 +190,8 @@ fn charts(rows: &[AnnexRow], unit: &str) -> Result<Markup, Error> {
 /// Returns what the numbers rest on.
 fn basis(page: &StopPage) -> Markup {
     let StopPage { robot, model, brakes, .. } = *page;
-    let numbers = |values: &[f64]| {
-        values.iter().map(|x| significant(*x, 4)).collect::<Vec<_>>().join(", ")
-    };
+    let numbers =
+        |values: &[f64]| values.iter().map(|x| significant(*x, 4)).collect::<Vec<_>>().join(", ");
     let ranges: Vec<String> = brakes
         .torque
         .iter()
@@ -214,14 +213,17 @@ fn basis(page: &StopPage) -> Markup {
     }
     if let Some(load) = brakes.payload {
         let centre = numbers(&load.centre);
-        facts.push(("Load", format!("{} kg at {centre} m in the last link\u{2019}s frame", load.mass)));
+        facts.push((
+            "Load",
+            format!("{} kg at {centre} m in the last link\u{2019}s frame", load.mass),
+        ));
     }
     facts.push(("Model, SHA-256", model.sha256.clone()));
     facts.push(("Written by", reachtube_files::TOOL.into()));
     html! {
         p { "Bounds are proved with directed rounding for the robot\u{2019}s equations as loaded, \
              with friction and gravity, for all brake torques, delays and errors within the ranges \
-             below. They say nothing about a robot outside these ranges. Measure them, and compare \
+             below. A robot outside these ranges may need longer. Measure them, and compare \
              recorded stops. Postures of greatest extension come from a search." }
         div.wide {
             table.facts {

@@ -27,7 +27,7 @@ const PATH: f64 = 100.0;
 pub struct AnnexB {
     /// The rows.
     pub rows: Vec<AnnexRow>,
-    /// What the table leaves out, and why.
+    /// What is missing in the table, and why.
     pub notes: Vec<String>,
 }
 
@@ -104,8 +104,11 @@ pub fn annex_b(robot: &Robot, brakes: &Brakes, input_set: &Hyperrectangle) -> Re
     }
     let loads: &[f64] = if brakes.payload.is_some() { &PARTS } else { &[0.0] };
     if brakes.payload.is_none() {
-        notes.push("No load is given, so all rows are without load; `payload` in the file of the \
-                    brakes gives one.".into());
+        notes.push(
+            "No load is given, so all rows are without load; `payload` in the file of the \
+                    brakes gives one."
+                .into(),
+        );
     }
     let table = Table { robot, brakes, loaded: loaded(robot, brakes.payload, loads)? };
     let full = |joint| Case { joint, speed: 1.0, extension: 1.0, load: loads[loads.len() - 1] };
@@ -117,8 +120,11 @@ pub fn annex_b(robot: &Robot, brakes: &Brakes, input_set: &Hyperrectangle) -> Re
     let joints: Vec<usize> = rows.iter().map(|(joint, _)| *joint).collect();
     let mut rows: Vec<AnnexRow> = rows.into_iter().map(|(_, row)| row).collect();
     match Category::one(brakes, input_set) {
-        None => notes.push("There is no category 1, since the file of the brakes has no \
-                            `deceleration`.".into()),
+        None => notes.push(
+            "There is no category 1, since the file of the brakes has no \
+                            `deceleration`."
+                .into(),
+        ),
         Some(category) => {
             let cases: Vec<Case> = joints.iter().flat_map(|joint| cases(*joint, loads)).collect();
             rows.extend(

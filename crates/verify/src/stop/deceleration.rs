@@ -20,7 +20,7 @@ pub struct Deceleration {
 impl Deceleration {
     /// Plans a deceleration that leaves a path at the time `from` (s). The speed along the path
     /// falls at a constant rate to 0, in the time in which no joint would decelerate by more than
-    /// its `limits` (rad/s²; m/s²) if the path were straight. The torques are those of the robot's
+    /// its `limits` (rad/s²; m/s²) if the path were straight. The torques follow from the robot's
     /// equations with friction, at the middle of each cycle.
     ///
     /// `None` if the path ends before, or the deceleration would take longer than 10 s.

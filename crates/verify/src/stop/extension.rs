@@ -14,12 +14,7 @@ const ROUNDS: usize = 6;
 /// that slides has no axis: all others are then at 0.
 ///
 /// The search tries positions of one joint after the other, and finds no proved maximum.
-pub(super) fn stretched(
-    robot: &Robot,
-    joint: usize,
-    part: f64,
-    tip: [f64; 3],
-) -> (Vec<f64>, f64) {
+pub(super) fn stretched(robot: &Robot, joint: usize, part: f64, tip: [f64; 3]) -> (Vec<f64>, f64) {
     let limits = |k: usize| {
         let [low, high] = robot.joints()[k].position_limits;
         let turn = std::f64::consts::PI;

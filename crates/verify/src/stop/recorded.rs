@@ -53,11 +53,8 @@ pub fn recorded_stops(
     category: &Category,
     source: &dyn RunSource,
 ) -> Result<Vec<RecordedStop>> {
-    let options = ReadOptions {
-        joints: Some(robot.joint_count()),
-        gap_limit: GapLimit::Usual,
-        until: None,
-    };
+    let options =
+        ReadOptions { joints: Some(robot.joint_count()), gap_limit: GapLimit::Usual, until: None };
     let mut all = Vec::new();
     for index in 0..source.runs().len() {
         let run = source.read(index, &options).map_err(reachtube_recordings::Error::Defects)?;

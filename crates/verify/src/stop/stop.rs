@@ -1,5 +1,5 @@
-//! Enclosed stops: drives off and brakes on at once (category 0), or after a controlled deceleration
-//! (category 1).
+//! Enclosed stops: drives off and brakes on at once (category 0), or after a controlled
+//! deceleration (category 1).
 
 use reachtube_reach::{Hyperrectangle, StepBounds};
 use reachtube_robot::Robot;
@@ -15,8 +15,8 @@ use crate::stop::velocity_bounds::{lower_after, lower_way, upper_after, upper_wa
 /// Length of a step, s.
 const STEP: f64 = 0.002;
 
-/// The time after the drives are off when a robot that moves still counts as one that does not stop,
-/// s.
+/// The time after the drives are off from which a robot that still moves counts as one that does
+/// not stop, s.
 const LONGEST: f64 = 5.0;
 
 /// How often the enclosure of a step is widened before the stop counts as lost.

@@ -111,7 +111,7 @@ fn errors() -> Hyperrectangle {
     Hyperrectangle { centre: vec![0.2, 0.0, -0.1, 0.0, 0.0, 0.1], radius }
 }
 
-/// Draws the torques of the drives on a path: those of the controller with errors at the ends of
+/// Draws the torques of the drives on a path: the controller's, with errors at the ends of
 /// their range, which change in each cycle.
 fn drive(random: &mut Random, path: &Path, limits: &[f64]) -> Vec<f64> {
     let slow = Deceleration::along(&Robot::lwa4p(), path, 0.0, limits).unwrap();
@@ -176,7 +176,8 @@ fn compare(robot: &Robot, category: &Category, seed: u64, radius: f64, arms: usi
 fn compare_all(category: &Category, [states, arms]: [u64; 2], radius: f64) -> [f64; 3] {
     let robot = Robot::lwa4p();
     let of_state = |seed| compare(&robot, category, seed, radius, arms as usize);
-    let [least, median, worst] = statistics((0..states).into_par_iter().flat_map(of_state).collect());
+    let [least, median, worst] =
+        statistics((0..states).into_par_iter().flat_map(of_state).collect());
     println!(
         "{category:?}, radius {radius}: enclosed over worst simulated way: least {least:.3}, \
          median {median:.2}, worst {worst:.2}"
