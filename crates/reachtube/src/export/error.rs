@@ -83,8 +83,8 @@ pub enum ExportError {
     },
     /// A reachable set could not be followed to the end of its motion.
     #[error(
-        "{case}: the reachable set ends at {time} s, before the motion; use only the samples before \
-         with --until"
+        "{case}: the reachable set ends at {time} s, before the motion; --until uses only the \
+         samples before"
     )]
     EndsEarly {
         /// The suite or run.

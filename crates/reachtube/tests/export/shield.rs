@@ -22,7 +22,8 @@ fn hinges() -> Robot {
 fn capsules(robot: &Robot) -> Capsules {
     let capsule = |link: usize, to: f64, radius: f64| {
         format!(
-            "[[capsule]]\nlink = {link}\nfrom = [0.02, 0, 0]\nto = [{to}, 0.1, 0.3]\nradius = {radius}\n"
+            "[[capsule]]\nlink = {link}\nfrom = [0.02, 0, 0]\nto = [{to}, 0.1, 0.3]\n\
+             radius = {radius}\n"
         )
     };
     let text = [
@@ -172,7 +173,8 @@ fn the_shields_own_file_gets_another_secure_radius_and_nothing_else() {
 }
 
 const TRAJECTORY: &str = "robot_name: \"arm\"\n\nmax_s_stop: 0.2\nv_max_allowed: [1.0, 0.6, 0.7]\n\
-    a_max_allowed: [10, 10, # the last\n  4]\na_max_ltt: [2, 2, 2]\nj_max_ltt: [15, 15, 15]\nv_safe: 0.1\n";
+    a_max_allowed: [10, 10, # the last\n  4]\na_max_ltt: [2, 2, 2]\nj_max_ltt: [15, 15, 15]\n\
+    v_safe: 0.1\n";
 
 fn trajectory(text: &str) -> ShieldFile {
     ShieldFile { name: "trajectory_parameters_arm.yaml".into(), text: text.into() }

@@ -83,8 +83,8 @@ pub(crate) struct Arguments {
     /// both, one --update for each. All other text stays as it is
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub update: Vec<PathBuf>,
-    /// With --to sara-shield: the links' capsules, a TOML or URDF file [default: those of the
-    /// embedded robot]
+    /// With --to sara-shield: the links' capsules, a TOML or URDF file [default: the
+    /// capsules of the embedded robot]
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub capsules: Option<PathBuf>,
     /// What to write

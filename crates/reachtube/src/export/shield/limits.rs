@@ -4,8 +4,8 @@ use reachtube_conform::SuiteReach;
 use reachtube_files::{MARK, TOOL};
 use reachtube_robot::Robot;
 
+use super::file::{ShieldFile, marked};
 use super::yaml::Yaml;
-use super::{ShieldFile, marked};
 use crate::export::text::{comment, harmless, number};
 use crate::export::{ExportError, ExportFile};
 

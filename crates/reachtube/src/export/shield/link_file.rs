@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use reachtube_robot::{JointGeometry, Placement, Robot};
 use reachtube_verify::{Body, Capsules};
 
-use super::ShieldFile;
+use super::file::ShieldFile;
 use super::yaml::Yaml;
 use crate::export::ExportError;
 use crate::export::draws::Draws;

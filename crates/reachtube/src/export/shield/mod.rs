@@ -3,6 +3,7 @@
 //! The shield grows each link's capsule by one `secure_radius` for all that its model of the robot
 //! leaves out. [`Shield::new`] proves that number from reachable sets.
 
+mod file;
 mod frames;
 mod limits;
 mod link_file;
@@ -15,6 +16,8 @@ use reachtube_verify::{Body, Capsules, Margin};
 
 use super::text::{comment, harmless, number};
 use super::{ExportError, ExportFile};
+pub use file::ShieldFile;
+use file::marked;
 use frames::Frames;
 pub use limits::Covered;
 use link_file::LinkFile;
@@ -25,15 +28,6 @@ const RELATIVE: f64 = 1e-5;
 
 /// Resolution of the secure radius \[m\]: far above what rounding moves a point of a link.
 const RESOLUTION: f64 = 1e-6;
-
-/// A file of the shield that is to be changed.
-#[derive(Debug, Clone)]
-pub struct ShieldFile {
-    /// Its name, which the changed file keeps.
-    pub name: String,
-    /// Its text.
-    pub text: String,
-}
 
 /// The margin of a link, and the suite or run in which it is the largest.
 #[derive(Debug, Clone, PartialEq)]
@@ -204,14 +198,4 @@ fn about(robot: &Robot, radius: f64, margins: &[LinkMargin], reached: &[SuiteRea
         format!("By link, m: {}.", margins.iter().map(of_link).collect::<Vec<_>>().join(", ")),
     ];
     comment("#", &lines)
-}
-
-/// Puts a comment above a file, in place of one that stood there from an earlier export.
-fn marked(about: &str, text: &str) -> String {
-    let earlier = text.starts_with(&format!("# {MARK}"));
-    let rest = match text.split_once("\n\n") {
-        Some((_, rest)) if earlier => rest,
-        _ => text,
-    };
-    format!("{about}\n{rest}")
 }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use super::ShieldFile;
+use super::file::ShieldFile;
 use crate::export::ExportError;
 
 /// A file of the shield.
