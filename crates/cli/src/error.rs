@@ -185,8 +185,11 @@ pub(crate) enum Error {
         "only mjcf and urdf take --robot; name a model that `conform --out` wrote with --model"
     )]
     NoModel,
-    /// `export --update` for a file that is no URDF.
-    #[error("--update is for --to urdf only; leave it out, or export to urdf")]
+    /// `export --update` for a tool whose files are written whole.
+    #[error(
+        "--update is for one file with --to urdf, and for files of the shield with --to \
+         sara-shield; leave it out"
+    )]
     NothingToUpdate,
     /// `export` has no recorded input.
     #[error(
@@ -195,7 +198,7 @@ pub(crate) enum Error {
     )]
     NoRecordedInput {
         /// The tool.
-        tool: reachtube::export::Tool,
+        tool: String,
     },
     /// A log could not be read or cut.
     #[error(transparent)]
