@@ -185,8 +185,11 @@ pub(crate) enum Error {
         "only mjcf and urdf take --robot; name a model that `conform --out` wrote with --model"
     )]
     NoModel,
-    /// `export --update` for a file that is no URDF.
-    #[error("--update is for --to urdf only; leave it out, or export to urdf")]
+    /// `export --update` for a tool whose files are written whole.
+    #[error(
+        "--update is for one file with --to urdf, and for files of the shield with --to \
+         sara-shield; leave it out"
+    )]
     NothingToUpdate,
     /// `export` has no recorded input.
     #[error(
@@ -195,7 +198,7 @@ pub(crate) enum Error {
     )]
     NoRecordedInput {
         /// The tool.
-        tool: reachtube::export::Tool,
+        tool: String,
     },
     /// A log could not be read or cut.
     #[error(transparent)]
@@ -203,6 +206,16 @@ pub(crate) enum Error {
     /// A model or robot could not be exported.
     #[error(transparent)]
     Export(ExportError),
+    /// Stops of category 1 are asked for, and no deceleration is given.
+    #[error(
+        "{}: stops of category 1 need the greatest deceleration of each joint; add the line \
+         `deceleration = [4, 4, 4, 6, 6, 6]`, one number for each joint in rad/s²",
+        brakes.display()
+    )]
+    NoDeceleration {
+        /// The file of the brakes.
+        brakes: PathBuf,
+    },
     /// The question of `verify` has no answer.
     #[error(transparent)]
     Verify(reachtube::verify::Error),
@@ -313,6 +326,7 @@ impl From<reachtube::verify::Error> for Error {
             E::File(error) => error.into(),
             E::Robot(error) => error.into(),
             E::Conform(error) => error.into(),
+            E::Recordings(error) => error.into(),
             error => Self::Verify(error),
         }
     }

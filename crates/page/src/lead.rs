@@ -38,8 +38,12 @@ pub(super) fn lead(sources: &Sources) -> Result<Lead> {
         (false, true) => vec!["model made of simulated data".into()],
         (false, false) => Vec::new(),
     };
-    let mut facts = facts_of_sets(model);
     let verdict = &check.verdict;
+    let until = check.provenance.settings.until;
+    let mut facts = match until.filter(|until| is_shorter(model, *until)) {
+        Some(until) => vec![("Checked".into(), format!("the first {until} s of each recording"))],
+        None => facts_of_sets(model),
+    };
     let (outside, rows) = (verdict.violations.count, verdict.rows);
     facts.push(("Outside the set".into(), format!("{outside} of {rows} rows")));
     let (figure, caption) = over_time(sources)?.unzip();
@@ -55,6 +59,12 @@ pub(super) fn of_built(built: &Built, lead: &mut Lead) {
     if let Some((figure, caption)) = over_horizons(built) {
         (lead.figure, lead.caption) = (Some(figure), caption);
     }
+}
+
+/// Tells whether a check up to a time ends before the horizon of the model, which the widest set
+/// of the model is about.
+fn is_shorter(model: &Model, until: f64) -> bool {
+    model.usefulness.as_ref().is_some_and(|said| until < said.horizon)
 }
 
 /// Returns the horizon and the widest set.

@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (model, setup) = Model::open(&scenario.model)?;
     let robot = Robot::from_description(&model.robot)?;
     let scene = scenario.scene(&robot)?;
-    let body = Body::new(&robot, &capsules(&scenario, &robot)?);
+    let body = Body::new(&robot, &capsules(scenario.capsules.as_deref(), &robot)?);
     let data = DataArguments {
         data: scenario.data.clone(),
         suites: scenario.suites.clone(),
@@ -77,9 +77,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(outcome)
 }
 
-/// Returns the capsules that the scenario names, or the embedded ones of the robot.
-fn capsules(scenario: &Scenario, robot: &Robot) -> Result<Capsules> {
-    let Some(path) = &scenario.capsules else { return Ok(Capsules::embedded(robot)?) };
+/// Returns the capsules of a TOML or URDF file, or the embedded ones of the robot.
+pub(super) fn capsules(path: Option<&Path>, robot: &Robot) -> Result<Capsules> {
+    let Some(path) = path else { return Ok(Capsules::embedded(robot)?) };
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {
         return Ok(Capsules::of_urdf(&Urdf::load(path, &UrdfOptions::default())?)?);
     }

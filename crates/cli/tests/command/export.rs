@@ -127,6 +127,40 @@ fn a_robot_is_written_for_simulators() {
 }
 
 #[test]
+fn the_shield_gets_a_proved_radius_and_its_own_file_is_changed_in_place() {
+    let lab = lab("");
+    let capsule = |link: usize| {
+        format!("[[capsule]]\nlink = {link}\nfrom = [0, 0, 0]\nto = [0.4, 0, 0]\nradius = 0.05\n")
+    };
+    lab.write("capsules.toml", capsule(1) + &capsule(2));
+    let shield = "export --model model.json --data data --to sara-shield";
+    let short = format!("{shield} --until 0.1 --capsules capsules.toml --out shield");
+    let first = lab.run(&format!("{short} --json")).exits(0).json();
+    assert_eq!(lab.names("shield"), ["robot_parameters.yaml"]);
+    let radius = first["secure_radius"].as_f64().unwrap();
+    let margins = first["margins"].as_array().unwrap();
+    assert!(margins.iter().all(|margin| margin["margin"].as_f64().unwrap() <= radius));
+    // Over the whole motions the same model has a larger radius, in the shield's own file.
+    let limits = "v_max_allowed: [9, 9]\na_max_allowed: [9, 9]\na_max_ltt: [2, 2]\nj_max: 7\n";
+    lab.write("trajectory_parameters_arm.yaml", limits);
+    let both = "--update shield/robot_parameters.yaml --update trajectory_parameters_arm.yaml";
+    let whole = lab.run(&format!("{shield} {both} --out whole --json")).exits(0).json();
+    assert!(whole["secure_radius"].as_f64().unwrap() > radius, "{whole}");
+    assert_eq!(lab.names("whole"), ["robot_parameters.yaml", "trajectory_parameters_arm.yaml"]);
+    assert!(lab.read("whole/trajectory_parameters_arm.yaml").contains("\nj_max: 7\n"));
+    // A file that is there is replaced where it has our mark.
+    let text = lab
+        .run(&format!("{shield} --until 0.2 --capsules capsules.toml --out shield"))
+        .exits(0)
+        .stdout;
+    assert!(text.contains("is proved") && text.contains("axis2"), "{text}");
+    lab.run(&format!("{shield} --out other")).fails_with_last(&["two axes", "capsule"]);
+    lab.run(&format!("{short} --update a --update b --update c")).fails_with(&["--update"]);
+    lab.run(&format!("{shield} --update none.yaml --out other")).fails_with(&["none.yaml"]);
+    lab.run("export --model model.json --to sara-shield --out other").fails_with(&["--data"]);
+}
+
+#[test]
 fn help_names_each_tool_and_what_it_means() {
     let help = Lab::new().run("export --help-all").exits(0).stdout;
     for (tool, _) in TOOLS {

@@ -50,6 +50,17 @@ fn results_fit_the_schema() {
     run("reach", &format!("reach {with} --out sets"));
     run("export", "export --model model.json --data data --to cora --out cora");
     run("export_robot", "export --robot arm.toml --to mjcf --out robot");
+    lab.write(
+        "capsules.toml",
+        [1, 2].map(|link| {
+            format!(
+                "[[capsule]]\nlink = {link}\nfrom = [0, 0, 0]\nto = [0.4, 0, 0]\nradius = 0.05\n"
+            )
+        })
+        .concat(),
+    );
+    let shield = "export --model model.json --data data --to sara-shield --out shield";
+    run("export_shield", &format!("{shield} --capsules capsules.toml"));
     run("report", &format!("report {with} --out page"));
     run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");
     run("robot_show", "robot show arm.toml");

@@ -78,6 +78,10 @@ fn a_check_up_to_a_time_says_so() {
     lab.run("report --model model.json --data data --until 0.3 --out page").exits(0);
     let page = text_of(&lab.read("page/report.html"));
     assert!(page.contains(until) && page.contains("SHA-256 of these recordings"), "{page}");
+    // The first lines are about the check, and not about the horizon of the model.
+    let lead = page.split("Outside the set").next().unwrap();
+    assert!(lead.contains("the first 0.3 s of each recording"), "{lead}");
+    assert!(!lead.contains("Widest set"), "{lead}");
     // A model that was found so says it too, and so does a check of it.
     let model = lab.conform("--until 0.3 --out short.json --json").exits(0).json();
     assert!(model["proof"]["claim"].as_str().unwrap().contains(until), "{model}");

@@ -71,6 +71,27 @@ pub enum ExportError {
         /// The suite or run.
         case: String,
     },
+    /// A robot or a file that the shield SaRA cannot have.
+    #[error("{place}: {problem}; {remedy}")]
+    Shield {
+        /// The file, line and key, or the robot and joint.
+        place: String,
+        /// What is wrong.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A reachable set could not be followed to the end of its motion.
+    #[error(
+        "{case}: the reachable set ends at {time} s, before the motion; --until uses only the \
+         samples before"
+    )]
+    EndsEarly {
+        /// The suite or run.
+        case: String,
+        /// The last time of the set, s.
+        time: f64,
+    },
     /// Simulators have one set of masses, for weight and inertia.
     #[error(
         "robot {robot} has masses of its own for gravity, which neither MJCF nor URDF can express; \

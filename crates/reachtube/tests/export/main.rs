@@ -7,3 +7,4 @@ mod dynamics;
 mod reader;
 mod refusals;
 mod robots;
+mod shield;

@@ -118,9 +118,12 @@ impl Finding {
         let Trust { motions, deciding, violation_probability: bound, confidence, .. } = trust;
         let of_motions = counted(*motions, "motion");
         if trust.average_probability.is_some_and(|average| average < 1.0) {
+            let (most, verb) = match trust.candidates() {
+                1 => (1, "leaves"),
+                several => (several, "leave"),
+            };
             return format!(
-                "at most {} in {} leaves the sets, on average over the {of_motions} held out",
-                trust.candidates(),
+                "at most {most} in {} {verb} the sets, on average over the {of_motions} held out",
                 motions + 1
             );
         }

@@ -30,7 +30,7 @@ const MOTOR_PRIOR: f64 = 1.0;
 
 /// A body and the joint that moves it. Its frame is the joint's, moved by q.
 #[derive(Debug, Clone)]
-pub(super) struct Body {
+pub(in crate::export) struct Body {
     /// Placement of the joint's frame in the frame of the previous body.
     pub placement: Placement,
     /// Unit vector of the joint's axis.
@@ -48,7 +48,7 @@ pub(super) struct Body {
 /// [`ExportError::SeparateGravity`] where gravity acts on masses of its own, and
 /// [`ExportError::NotPhysical`] where a link cannot exist and no bodies with the same torques were
 /// found.
-pub(super) fn bodies(robot: &Robot) -> Result<Vec<Body>, ExportError> {
+pub(in crate::export) fn bodies(robot: &Robot) -> Result<Vec<Body>, ExportError> {
     let (n, joints) = (robot.joint_count(), &robot.description().joints);
     if joints.iter().any(|joint| joint.gravity_moments.is_some()) {
         return Err(ExportError::SeparateGravity { robot: robot.name().into() });

@@ -16,6 +16,7 @@ use std::path::Path;
 
 use reachtube_robot::{Lock, Robot};
 
+pub(super) use bodies::bodies;
 pub use mjcf::{Damping, mjcf};
 pub use urdf::{UrdfFiles, updated_urdf, urdf};
 

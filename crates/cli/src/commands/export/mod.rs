@@ -1,5 +1,7 @@
 //! `reachtube export`: models and robots as other tools read them.
 
+mod shield;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -30,6 +32,8 @@ Tools, what they can mean, and what they cannot:
   juliareach  affine models without a recorded input
   mjcf, urdf  the robot; of its friction a viscous and a Coulomb coefficient, and for MuJoCo 4 a
               cubic one. urdf has no motor inertia; --update changes a URDF that is there
+  sara-shield the radius by which the safety shield SaRA must grow each link, proved; limits in
+              its file that --update names, cut to what the motions reach
 Unsupported models are refused. The first lines of each file state what the tool computes.
 
 Examples:
@@ -37,6 +41,8 @@ Examples:
   reachtube export --model model.json --to hylaa --data recordings --suites A --out hylaa
   reachtube export --robot arm.toml --to mjcf --out robot
   reachtube export --robot identified.toml --to urdf --update arm.urdf --out robot
+  reachtube export --model model.json --to sara-shield --data recordings --suites A --until 0.2 \\
+    --update robot_parameters_schunk.yaml --out shield
 
 Each suite, or run with a nominal motion of its own, gets a folder, which also holds our bounds
 (bounds.csv at samples, tube.csv between them) and the input (inputs.csv). docs/export.md says how
@@ -51,6 +57,7 @@ const TARGETS: Choices = &[
     ("juliareach", "ReachabilityAnalysis.jl, a Julia script"),
     ("mjcf", "MuJoCo, the robot"),
     ("urdf", "the robot"),
+    ("sara-shield", "SaRA shield, YAML files of the robot and its limits"),
 ];
 
 const FORMS: Choices = &[
@@ -71,10 +78,15 @@ pub(crate) struct Arguments {
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// With --to urdf: the URDF whose <inertial> and <dynamics> are to become the robot's; all
-    /// other text stays as it is
+    /// With --to urdf: the URDF whose <inertial> and <dynamics> are to become the robot's. With
+    /// --to sara-shield: the shield's robot_parameters file, its trajectory_parameters file, or
+    /// both, one --update for each. All other text stays as it is
     #[arg(long, value_name = "FILE", hide_short_help = true)]
-    pub update: Option<PathBuf>,
+    pub update: Vec<PathBuf>,
+    /// With --to sara-shield: the links' capsules, a TOML or URDF file [default: the
+    /// capsules of the embedded robot]
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
+    pub capsules: Option<PathBuf>,
     /// What to write
     #[arg(long, value_name = "TOOL", value_parser = choice::<Target>(TARGETS))]
     pub to: Target,
@@ -112,6 +124,9 @@ pub(crate) enum Target {
     Mjcf,
     /// The robot as URDF.
     Urdf,
+    /// The files of the shield SaRA.
+    #[serde(rename = "sara-shield")]
+    SaraShield,
     /// A model for a tool.
     #[serde(untagged)]
     Tool(Tool),
@@ -127,16 +142,22 @@ struct Written {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    if args.update.is_some() && !matches!(args.to, Target::Urdf) {
+    let most = match args.to {
+        Target::Urdf => 1,
+        Target::SaraShield => 2,
+        _ => 0,
+    };
+    if args.update.len() > most {
         return Err(Error::NothingToUpdate);
     }
-    let updated = |robot: &Robot| match &args.update {
+    let updated = |robot: &Robot| match args.update.first() {
         Some(path) => updated_urdf_files(robot, path, &args.lock.lock),
         None => urdf_files(robot),
     };
     match args.to {
         Target::Mjcf => robot(args, &mjcf_files, json),
         Target::Urdf => robot(args, &updated, json),
+        Target::SaraShield => shield::run(args, json),
         Target::Tool(tool) => model(args, tool, json),
     }
 }
@@ -177,11 +198,11 @@ fn write_all<'a>(paths: &[PathBuf], files: impl Iterator<Item = &'a ExportFile>)
     Ok(())
 }
 
-/// Writes each case of a model for a tool.
-fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
+/// Opens the model over the recordings; `tool` names what it is for.
+fn open(args: &Arguments, tool: &str) -> Result<OpenedCheck> {
     let model = args.model.as_ref().ok_or(Error::NoModel)?;
-    let data = args.data.clone().ok_or(Error::NoRecordedInput { tool })?;
-    write::try_at(&args.out.join("A/bounds.csv"))?;
+    let no_input = || Error::NoRecordedInput { tool: tool.into() };
+    let data = args.data.clone().ok_or_else(no_input)?;
     let (model, setup) = Model::open(model)?;
     let data = DataArguments {
         data,
@@ -192,6 +213,13 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
     };
     let opened = OpenedCheck::with(model, setup, &data, None, Keep::Needed)?;
     opened.print_notes(&data);
+    Ok(opened)
+}
+
+/// Writes each case of a model for a tool.
+fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
+    write::try_at(&args.out.join("A/bounds.csv"))?;
+    let opened = open(args, &tool.to_string())?;
     let cases = opened.export_cases()?;
     let names = file_names::of_cases(&cases);
     let written = cases.into_iter().zip(names).map(|(case, name)| {

@@ -1,0 +1,78 @@
+//! `reachtube export --to sara-shield`.
+
+use std::path::{Path, PathBuf};
+
+use reachtube::Robot;
+use reachtube::export::shield::{LinkMargin, Shield, ShieldFile};
+use reachtube::number::at_least;
+use reachtube::write;
+use serde_json::{Value, json};
+
+use super::{Arguments, open, write_all};
+use crate::commands::verify::capsules;
+use crate::error::Result;
+use crate::outcome::Outcome;
+use crate::output;
+use crate::table::table;
+
+/// Writes what the shield reads of a model over recordings.
+pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    write::try_at(&args.out.join("robot_parameters.yaml"))?;
+    let updates = args.update.iter().map(|path| read(path)).collect::<Result<Vec<_>>>()?;
+    let opened = open(args, "the SaRA shield")?;
+    let robot = Robot::from_description(&opened.model.robot)?;
+    let named = capsules(args.capsules.as_deref(), &robot);
+    let capsules = match (&args.capsules, updates.is_empty()) {
+        // The shield's own file may have the capsules.
+        (None, false) => named.ok(),
+        _ => Some(named?),
+    };
+    let shield = Shield::new(&robot, capsules.as_ref(), &opened.reach()?, &updates)?;
+    let paths: Vec<PathBuf> = shield.files.iter().map(|file| args.out.join(&file.name)).collect();
+    write_all(&paths, shield.files.iter())?;
+    if shield.secure_radius > shield.largest_capsule {
+        output::warn(&format!(
+            "a link may be {} m from its nominal motion, more than the radius of any capsule; \
+             --until with the time over which the shield looks ahead gives a smaller secure radius",
+            at_least(shield.secure_radius)
+        ));
+    }
+    output::show(json, &value(&shield, &paths), || text(&shield, &paths))?;
+    Ok(Outcome::Done)
+}
+
+fn read(path: &Path) -> Result<ShieldFile> {
+    let text = reachtube_files::read_text(path, "name a YAML file of the shield with --update")?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(ShieldFile { name, text })
+}
+
+fn value(shield: &Shield, paths: &[PathBuf]) -> Value {
+    let margin = |margin: &LinkMargin| {
+        json!({ "link": margin.joint, "margin": margin.distance, "motion": margin.case,
+                "time": margin.time })
+    };
+    json!({
+        "tool": "SaRA shield",
+        "secure_radius": shield.secure_radius,
+        "margins": shield.margins.iter().map(margin).collect::<Vec<_>>(),
+        "velocity": shield.covered.velocity,
+        "acceleration": shield.covered.acceleration,
+        "files": paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
+    })
+}
+
+fn text(shield: &Shield, paths: &[PathBuf]) -> String {
+    let row = |margin: &LinkMargin| {
+        let time = format!("{:.3}", margin.time);
+        vec![margin.joint.clone(), at_least(margin.distance), margin.case.clone(), time]
+    };
+    let rows: Vec<_> = shield.margins.iter().map(row).collect();
+    let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    format!(
+        "exported to the SaRA shield: secure_radius {} m is proved\n{}  {}\n",
+        at_least(shield.secure_radius),
+        table(&["link of", "margin [m]", "motion", "at [s]"], &rows),
+        paths.join("\n  ")
+    )
+}
