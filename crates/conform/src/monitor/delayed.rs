@@ -2,11 +2,10 @@
 
 use std::collections::VecDeque;
 
-use reachtube_recordings::Torque;
+use reachtube_recordings::{Sample, Torque};
 use reachtube_robot::Robot;
 
 use crate::data::input::SPAN;
-use crate::monitor::even::Sample;
 
 /// Holds samples back until the velocities after them are known, and adds J q̈ to the input from
 /// torques that were measured behind the gear.

@@ -1,9 +1,7 @@
 //! The input u of samples, without allocation.
 
-use reachtube_recordings::Torque;
+use reachtube_recordings::{Sample, Torque};
 use reachtube_robot::{Robot, Workspace};
-
-use crate::monitor::even::Sample;
 
 /// Evaluates the input of the model as [`Torque::input`] does.
 #[derive(Debug, Clone)]

@@ -1,16 +1,15 @@
 use std::sync::Arc;
 
 use reachtube_reach::{Propagation, TimeGrid};
+use reachtube_recordings::{EvenSamples, Sample, SampleError};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::model::file::Model;
 use crate::monitor::delayed::Delayed;
-use crate::monitor::even::{Even, Sample};
 use crate::monitor::input::InputOf;
 use crate::monitor::leave::Leave;
 use crate::monitor::nominal::LiveNominal;
-use crate::monitor::sample_error::SampleError;
 use crate::monitor::schedule::Schedule;
 use crate::monitor::window::{Sets, Window};
 use crate::tube::grids::Grid;
@@ -63,7 +62,7 @@ const DRIFT_WEIGHT: f64 = 1.0 / 16.0;
 /// ```
 #[derive(Debug)]
 pub struct Monitor {
-    even: Even,
+    even: EvenSamples,
     delayed: Option<Delayed>,
     judge: Judge,
 }
@@ -147,7 +146,7 @@ impl Monitor {
             sets,
         };
         judge.leaves.reserve(at_once * judge.most_at_once());
-        Ok(Self { even: Even::new(n, step, schedule.longest_gap), delayed, judge })
+        Ok(Self { even: EvenSamples::new(n, step, schedule.longest_gap), delayed, judge })
     }
 
     /// Takes a sample: its time \[s\], positions, velocities and torques (n each; rad, rad/s, N m,

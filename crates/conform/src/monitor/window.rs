@@ -1,12 +1,11 @@
 //! One window: a nominal motion from a measured state on, and the set around it.
 
 use reachtube_reach::{IntervalVector, Solution};
-use reachtube_recordings::State;
+use reachtube_recordings::{Sample, State};
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, sub_down, sub_up};
 
 use crate::data::side::Side;
-use crate::monitor::even::Sample;
 use crate::monitor::leave::Leave;
 use crate::monitor::nominal::LiveNominal;
 use crate::sets::UncertaintySets;

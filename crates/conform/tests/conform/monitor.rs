@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use reachtube_conform::data::{InputCorrection, JointCorrection};
-use reachtube_conform::monitor::{Leave, Monitor, SampleError, Schedule};
+use reachtube_conform::monitor::{Leave, Monitor, Schedule};
 use reachtube_conform::settings::Equations;
 use reachtube_conform::{Check, Model, Settings, Setup, Silent};
-use reachtube_recordings::{DataSet, MemoryRuns, ReadOptions, Run, RunSource, Torque};
+use reachtube_recordings::{DataSet, MemoryRuns, ReadOptions, Run, RunSource, SampleError, Torque};
 use reachtube_robot::Robot;
 
 use crate::common::{
@@ -204,7 +204,7 @@ fn a_sample_allocates_nothing() {
     }
 }
 
-/// Runs of the suites D and E, which were kept back, one by one.
+/// Runs of the suites D and E, which were held out, one by one.
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn replayed_schunk_recordings_have_the_verdicts_of_a_check() {
