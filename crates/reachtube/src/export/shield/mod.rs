@@ -189,8 +189,8 @@ fn about(robot: &Robot, radius: f64, margins: &[LinkMargin], reached: &[SuiteRea
         format!("{MARK} ({TOOL}): secure_radius of {}.", harmless(robot.name())),
         format!(
             "Proved: grown by {} m, the capsules on the nominal motion contain the capsules on \
-             every motion of the model, for up to {:.4} s of {}. How far the controller lets the arm \
-             leave its plan is not part of it.",
+             every motion of the model, for up to {:.4} s of {}. How far the controller lets the \
+             arm leave its plan is not part of it.",
             number(radius),
             ends.fold(0.0, f64::max),
             names.join(", ")
