@@ -206,6 +206,16 @@ pub(crate) enum Error {
     /// A model or robot could not be exported.
     #[error(transparent)]
     Export(ExportError),
+    /// Stops of category 1 are asked for, and no deceleration is given.
+    #[error(
+        "{}: stops of category 1 need the greatest deceleration of each joint; add the line \
+         `deceleration = [4, 4, 4, 6, 6, 6]`, one number for each joint in rad/s²",
+        brakes.display()
+    )]
+    NoDeceleration {
+        /// The file of the brakes.
+        brakes: PathBuf,
+    },
     /// The question of `verify` has no answer.
     #[error(transparent)]
     Verify(reachtube::verify::Error),
@@ -316,6 +326,7 @@ impl From<reachtube::verify::Error> for Error {
             E::File(error) => error.into(),
             E::Robot(error) => error.into(),
             E::Conform(error) => error.into(),
+            E::Recordings(error) => error.into(),
             error => Self::Verify(error),
         }
     }

@@ -5,13 +5,14 @@ use std::path::Path;
 use crate::check::Check;
 use crate::claim::certificate::Certificate;
 use crate::claim::remote::PointServer;
-use crate::conformance::{Conformance, conform, conform_elsewhere};
+use crate::conformance::{Conformance, conform_elsewhere, conform_fitted};
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::fit::fit::fit;
+use crate::fit::fit::{Fitted, fit};
 use crate::fit::group::FitSettings;
 use crate::fit::record::FitRecord;
 use crate::model::file::Model;
+use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
 use crate::result::finding::Finding;
@@ -42,14 +43,18 @@ impl Answer {
         resume: Option<&Path>,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let (problem, record) = match fit {
-            None => (problem, None),
+        let (problem, record, left_out) = match fit {
+            None => (problem, None, None),
             Some(settings) => {
-                let fitted = self::fit(&problem, settings, progress)?;
-                (fitted.problem, Some(fitted.record))
+                let Fitted { problem, record, left_out } = self::fit(&problem, settings, progress)?;
+                (problem, Some(record), left_out)
             }
         };
-        let found = conform(&problem, progress, resume)?;
+        // A fit has left the rows of each motion out already, also out of the nominal model.
+        let is_linear = problem.dynamics().linear_system().is_some();
+        let asks_rows = is_linear && !problem.settings().notion.asks_points();
+        let left_out = left_out.filter(|_| asks_rows);
+        let found = conform_fitted(&problem, left_out, progress, resume)?;
         Ok(Self { model: Self::model(&problem, &found, record), problem, found })
     }
 
@@ -86,6 +91,14 @@ impl Answer {
         let Self { problem, found, model } = self;
         let found = found.widened(&problem, allowance)?;
         Ok(Self { model: Self::model(&problem, &found, model.fit), problem, found })
+    }
+
+    /// Replaces how motions lie to a model without them, such as by what
+    /// [`carry_over`](crate::carry_over) finds for models that have seen less of them.
+    #[must_use]
+    pub fn with_left_out(mut self, left_out: Vec<LeftOut>) -> Self {
+        self.found.left_out.clone_from(&left_out);
+        Self { model: self.model.with_left_out(left_out), ..self }
     }
 
     /// Returns whether the sets were proved to enclose every recording.

@@ -11,7 +11,7 @@ use crate::data::problem::Problem;
 use crate::data::settings::check_allowance;
 use crate::error::Result;
 use crate::explain::explanation::{Explanation, explain_some};
-use crate::next_motion::allowance::allowance_for;
+use crate::next_motion::allowance::AllowanceNeeded;
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::{Calibration, calibrate, not_smallest};
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -58,11 +58,9 @@ pub struct Conformance {
     /// The sets without each of the motions they were found on; none for one motion, for a
     /// bisection, and for other notions than the hull.
     pub left_out: Vec<LeftOut>,
-    /// The radii that have to be added to X0 and U, 3n, so that the sets without each of the
-    /// motions enclose it; zero where they do. Radii of U are in proportion to the error of the
-    /// input, and radii of X0 to X0; they are 0 where the noise of the sensors limits X0. `None`
-    /// without such motions, if no radii suffice, and for a model that is not linear.
-    pub allowance_needed: Option<Vec<f64>>,
+    /// What each of these motions asks of wider sets. `None` without such motions, if the program
+    /// of some could not be solved, and for a model that is not linear.
+    pub allowance_needed: Option<AllowanceNeeded>,
     /// The radii that were added to the smallest X0 and U, 3n; empty if none were.
     pub allowance: Vec<f64>,
     /// The runs that decide the sets.
@@ -114,7 +112,26 @@ pub fn conform(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem, None)?, progress, resume)
+    conform_claim(problem, &*claim(problem, None)?, None, (progress, resume))
+}
+
+/// Does what [`conform`] does for the problem of a fit, which left motions out of both the nominal
+/// model and the sets.
+///
+/// # Guarantee
+///
+/// As [`conform`].
+///
+/// # Errors
+///
+/// As [`conform`].
+pub(crate) fn conform_fitted(
+    problem: &Problem,
+    left_out: Option<LeftOutMotions>,
+    progress: &dyn Progress,
+    resume: Option<&Path>,
+) -> Result<Conformance> {
+    conform_claim(problem, &*claim(problem, None)?, left_out, (progress, resume))
 }
 
 /// Does what [`conform`] does for the problem of a fold whose points `server` asks: the notions
@@ -132,19 +149,19 @@ pub fn conform_elsewhere(
     server: &dyn PointServer,
     progress: &dyn Progress,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem, Some(server))?, progress, None)
+    conform_claim(problem, &*claim(problem, Some(server))?, None, (progress, None))
 }
 
 fn conform_claim(
     problem: &Problem,
     claim: &dyn Claim,
-    progress: &dyn Progress,
-    resume: Option<&Path>,
+    left_out: Option<LeftOutMotions>,
+    how: (&dyn Progress, Option<&Path>),
 ) -> Result<Conformance> {
     let (found, calibration) = if problem.settings().calibrate.is_empty() {
-        (smallest_sets(problem, claim, progress, resume)?, None)
+        (smallest_sets(problem, claim, left_out, how)?, None)
     } else {
-        let (found, calibration) = calibrate(problem, progress, resume)?;
+        let (found, calibration) = calibrate(problem, left_out, how)?;
         (found, Some(calibration))
     };
     judged(problem, found, calibration, Vec::new())
@@ -172,7 +189,7 @@ fn judged(
     let fit = NominalFit::new(problem)?;
     let input_error = InputError::of_problem(problem)?;
     let allowance_needed =
-        missing.and_then(|missing| allowance_for(problem, &tube.sets, &input_error, &missing));
+        missing.map(|all| AllowanceNeeded::new(problem, &tube.sets, &input_error, &all));
     let warnings = warnings(problem, &tube.sets, &radii, &fit, &input_error, calibration.as_ref())?;
     let trust = match allowance.is_empty() {
         true => trust(problem, calibration.as_ref(), optimality_gap, &tight, verdict.conformant),

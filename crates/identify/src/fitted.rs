@@ -3,9 +3,11 @@
 use crate::error::{Error, Result};
 use crate::friction::joints::coefficients;
 use crate::gravity::alternation::{GravityAndFriction, fit_gravity_and_friction};
+use crate::inertia::SaturatingFriction;
 use crate::inertia::columns::FrictionColumns;
 use crate::inertia::description::description;
 use crate::inertia::fit::{InertiaFit, fit_inertia};
+use crate::inertia::saturation::saturating;
 use crate::inputs::Inputs;
 use crate::plausibility::compensated::input_unit_warning;
 use crate::plausibility::gain::{Gain, GainLikelihood, gains};
@@ -14,7 +16,7 @@ use crate::plausibility::offset::{OffsetSearch, PositionOffset};
 use crate::plausibility::warnings::Checked;
 use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, Samples};
-use crate::settings::ModelSettings;
+use crate::settings::{ModelSettings, WarmingChoice};
 use crate::stiction::KnownFriction;
 use crate::variant::{set_gravity_moments, with_friction};
 use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
@@ -29,6 +31,8 @@ pub(crate) struct Fitted {
     pub known: Robot,
     /// The fit of the inertial parameters.
     pub inertia: InertiaFit,
+    /// The joints whose friction saturates.
+    pub saturating: Vec<SaturatingFriction>,
     /// Description of the fitted robot.
     pub description: RobotDescription,
     /// The fitted robot.
@@ -57,7 +61,8 @@ impl Fitted {
         let kept = first.gravity.as_ref().filter(|gravity| gravity.rests > 0);
         let kept = kept
             .map(|gravity| KnownFriction { robot: &slow, deviations: &gravity.rest_deviations });
-        let (friction, known, inertia) = fit_links([robot, load], friction, kept, inputs, model)?;
+        let fitted = fit_links([robot, load], friction, kept, inputs, model)?;
+        let FittedLinks { friction, known, inertia, saturating } = fitted;
         let mut description = description(robot, &inertia, &friction).map_err(|error| {
             impossible(error, &check([robot, &known], &inertia, &friction, inputs).warnings)
         })?;
@@ -65,7 +70,7 @@ impl Fitted {
             set_gravity_moments(&mut description, &gravity.robot);
         }
         let found = Robot::from_description(&description)?;
-        Ok(Self { first, friction, known, inertia, description, found })
+        Ok(Self { first, friction, known, inertia, saturating, description, found })
     }
 
     /// Returns the gains of the joints, the offsets of their positions, and warnings about
@@ -97,11 +102,18 @@ fn with_cause(error: Error, robot: &Robot, inputs: &Inputs) -> Error {
     }
 }
 
+/// The links, and friction that is known before they are fitted.
+struct FittedLinks {
+    friction: Vec<FrictionDescription>,
+    known: Robot,
+    inertia: InertiaFit,
+    saturating: Vec<SaturatingFriction>,
+}
+
 /// Fits the inertial parameters to motions with the friction of slow motions subtracted.
 ///
 /// A joint whose torque is explained better by friction that only the exciting motions determine
-/// gets that friction: slow motions do not show all of it. Returns the known friction, one entry
-/// per joint, the robot with it, and the fit.
+/// gets that friction: slow motions do not show all of it. Then friction that saturates is tried.
 ///
 /// The poses at rest take part unless gravity keeps its own mass moments. The joints may keep a
 /// part of the friction `kept` there.
@@ -111,7 +123,7 @@ fn fit_links(
     kept: Option<KnownFriction>,
     inputs: &Inputs,
     model: &ModelSettings,
-) -> Result<(Vec<FrictionDescription>, Robot, InertiaFit)> {
+) -> Result<FittedLinks> {
     let none = FrictionDescription::default();
     let known_count = slow.iter().filter(|friction| **friction != none).count();
     let columns = FrictionColumns {
@@ -120,20 +132,42 @@ fn fit_links(
     };
     let rest: &[PreparedLog] = if model.separate_gravity { &[] } else { &inputs.rest };
     let logs = [&inputs.dynamic[..], rest];
-    let fit = |friction: Vec<FrictionDescription>| {
+    let fit = |friction: Vec<FrictionDescription>| -> Result<FittedLinks> {
         let known = with_friction(load, &friction)?;
         let fit = fit_inertia(robot, &known, logs, kept, &inputs.sampling, model, columns);
-        let fit = fit.map_err(|error| with_cause(error, robot, inputs))?;
-        Ok((friction, known, fit))
+        let inertia = fit.map_err(|error| with_cause(error, robot, inputs))?;
+        Ok(FittedLinks { friction, known, inertia, saturating: Vec::new() })
     };
-    let first = fit(slow)?;
-    if known_count == 0 || !model.refit_friction {
-        return Ok(first);
+    let mut found = fit(slow)?;
+    if known_count > 0 && model.refit_friction {
+        let free = fit(vec![none; robot.joint_count()])?;
+        let size = |of: &FittedLinks, j: usize| of.inertia.joints[j].residual;
+        let better = |j: usize| size(&free, j) < size(&found, j);
+        let slow = found.friction.iter().enumerate();
+        let chosen = slow.map(|(j, slow)| if better(j) { none } else { *slow });
+        found = fit(chosen.collect())?;
     }
-    let free = fit(vec![none; robot.joint_count()])?;
-    let better = |j: usize| free.2.joints[j].residual < first.2.joints[j].residual;
-    let chosen = first.0.iter().enumerate().map(|(j, slow)| if better(j) { none } else { *slow });
-    fit(chosen.collect())
+    let is_dry = model.motor_inertia && !inputs.compensated;
+    if !(model.saturating && is_dry && model.warming == WarmingChoice::None) {
+        return Ok(found);
+    }
+    let mut tried = saturating([robot, &found.known], &found.inertia, inputs);
+    // Friction that is fitted once more might drive the joint at standstill.
+    while tried.iter().any(Option::is_some) {
+        let own = found.friction.iter().zip(&tried);
+        let own = own.map(|(own, tried)| tried.as_ref().map_or(*own, |tried| tried.friction));
+        let again = fit(own.collect())?;
+        let described = description(robot, &again.inertia, &again.friction)?;
+        let before = tried.iter().flatten().count();
+        for (tried, joint) in tried.iter_mut().zip(&described.joints) {
+            tried.take_if(|_| !joint.friction.dissipates_at_standstill());
+        }
+        if tried.iter().flatten().count() == before {
+            let saturating = tried.into_iter().flatten().map(|tried| tried.law).collect();
+            return Ok(FittedLinks { saturating, ..again });
+        }
+    }
+    Ok(found)
 }
 
 /// Returns the gains of the joints, the offsets of their positions, and warnings about implausible

@@ -5,6 +5,7 @@ use crate::friction::fit::FrictionFit;
 use crate::gravity::fit::GravityFit;
 use crate::inertia::description::friction_errors;
 use crate::inertia::fit::InertiaFit;
+use crate::inertia::saturation::SaturatingFriction;
 use crate::inputs::Inputs;
 use crate::law_gain::{LawGain, held_out_residuals};
 use crate::plausibility::gain::Gain;
@@ -41,6 +42,8 @@ pub struct Identification {
     pub friction: Vec<FrictionFit>,
     /// The fit of the inertial parameters.
     pub inertia: InertiaFit,
+    /// The joints whose friction saturates.
+    pub saturating: Vec<SaturatingFriction>,
     /// Gains of the joints' torques relative to each other.
     pub gains: Vec<Gain>,
     /// Offsets of the joints' positions that explain the torque best; empty for too few samples.
@@ -104,17 +107,16 @@ pub fn identify(
     inputs.changes.extend(unknown_sides(sides, robot.joint_count()));
     let law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
     let gain_warnings = laws.iter().flat_map(|laws| laws.warnings(robot)).collect();
-    let Fitted { first, friction, known, inertia, mut description, found } = fitted;
+    let Fitted { first, friction, known, inertia, saturating, mut description, found } = fitted;
     add_friction(&mut description, &inputs, &friction, &first.friction, &inertia);
     let warming_robot = Robot::from_description(&description)?;
     progress(3, STEPS);
-
     let (held_out, tried) = inputs.validation();
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
     let windows = simulate(&warming_robot, tried, &model.windows);
     let mut warnings = [inputs.warnings, first.warnings, law_warnings, gain_warnings].concat();
     warnings.extend(implausible.iter().map(|result| result.text.clone()));
-    warnings.extend(inertia_warnings(&first.friction, &inertia, robot));
+    warnings.extend(inertia_warnings(&first.friction, (&inertia, &saturating), robot));
     let links = inertia.physical.is_some() && !model.separate_gravity;
     warnings.extend(validation_warnings(robot, &validation, &windows, held_out, links));
     keep_motors(&mut description, given, model);
@@ -126,6 +128,7 @@ pub fn identify(
         gravity: first.gravity,
         friction: first.friction,
         inertia,
+        saturating,
         gains,
         offsets,
         warming,
@@ -189,11 +192,12 @@ fn add_friction(
         joint.friction.warming = *law;
     }
     for (j, joint) in description.joints.iter_mut().enumerate() {
-        let is_known = friction[j] != FrictionDescription::default();
-        let slow = slow.iter().find(|fit| fit.joint.joint == joint.name && is_known);
-        let known = slow.map(|fit| &fit.joint.standard_errors);
+        let is_own = |fit: &&FrictionFit| {
+            fit.joint.joint == joint.name && fit.joint.coefficients == friction[j]
+        };
+        let known = slow.iter().find(is_own).map(|fit| &fit.joint.standard_errors);
         joint.friction.standard_errors = friction_errors(inertia, j, known);
-        let logs = inputs.friction.iter().filter(|_| is_known);
+        let logs = inputs.friction.iter().filter(|_| known.is_some());
         let is_fitted =
             inertia.columns.contains(&Parameter { joint: j, kind: ParameterKind::Viscous1 });
         let logs = logs.chain(inputs.dynamic.iter().filter(|_| is_fitted));
@@ -205,10 +209,16 @@ fn add_friction(
 
 /// Returns warnings about the inertial parameters, and one for each joint whose viscous friction by
 /// least squares falls with speed: in the exciting motions, or else in the slow ones.
-fn inertia_warnings(slow: &[FrictionFit], inertia: &InertiaFit, robot: &Robot) -> Vec<String> {
+fn inertia_warnings(
+    slow: &[FrictionFit],
+    (inertia, saturating): (&InertiaFit, &[SaturatingFriction]),
+    robot: &Robot,
+) -> Vec<String> {
     let of_slow = slow.iter().filter_map(|fit| fit.joint.falling.as_ref());
-    let is_new =
-        |slow: &&FallingFriction| inertia.falling.iter().all(|falling| falling.joint != slow.joint);
+    let is_new = |slow: &&FallingFriction| {
+        inertia.falling.iter().all(|falling| falling.joint != slow.joint)
+            && saturating.iter().all(|law| law.joint != slow.joint)
+    };
     let falling = of_slow.filter(is_new).chain(&inertia.falling).map(|of| of.warning(robot));
     let open = inertia.undetermined_warning().into_iter();
     open.chain(inertia.body_warnings(robot)).chain(falling).collect()

@@ -76,7 +76,7 @@ pub use friction::sample::FrictionSample;
 pub use friction::stribeck::StribeckTrial;
 pub use gravity::GravityFit;
 pub use identification::{Identification, identify};
-pub use inertia::{BaseParameter, InertiaFit, JointInertia, PhysicalFit};
+pub use inertia::{BaseParameter, InertiaFit, JointInertia, PhysicalFit, SaturatingFriction};
 pub use law_gain::LawGain;
 pub use plausibility::{Gain, Implausible, PositionOffset, WrongColumns};
 pub use regression::solution::Solution;

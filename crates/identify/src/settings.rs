@@ -87,6 +87,12 @@ pub struct ModelSettings {
     /// Whether the rise of dry friction toward standstill is tried on the slow motions (Stribeck
     /// effect).
     pub stribeck: bool,
+    /// Whether friction that saturates is tried on the exciting motions: dry friction that builds
+    /// up with speed, in place of viscous friction that bends.
+    ///
+    /// It is not tried on inputs or torques without the motors' friction, nor beside laws of
+    /// warming.
+    pub saturating: bool,
     /// Which laws are tried by which friction falls while the joints warm up.
     pub warming: WarmingChoice,
     /// Durations of the forward simulations over the validation recordings \[s\].
@@ -146,6 +152,7 @@ impl Default for ModelSettings {
             prior_strength: 1.0,
             separate_gravity: false,
             stribeck: false,
+            saturating: true,
             warming: WarmingChoice::None,
             windows: vec![0.5, 1.0, 2.0],
         }

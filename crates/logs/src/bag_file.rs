@@ -1,7 +1,9 @@
 //! rosbag2 files in SQLite: the tables `topics` and `messages`.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs::OpenOptions;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags, limits::Limit};
@@ -13,6 +15,9 @@ use crate::loss::Loss;
 
 /// Longest message that is read, bytes.
 const LARGEST: i32 = 1 << 26;
+
+/// What a message starts with where rosbag2 compressed it by itself.
+const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// Reads a file and passes the messages of the topics `wanted` on, in the order of the file.
 ///
@@ -186,7 +191,8 @@ impl Scan<'_> {
             };
             *number += 1;
             let received = match row.get_ref(3)?.as_blob() {
-                Ok(data) => receive(RawMessage { role: *role, log_time, data }),
+                Ok(data) => plain(data)
+                    .and_then(|data| receive(RawMessage { role: *role, log_time, data: &data })),
                 Err(_) => Err("it is not binary".into()),
             };
             if let Err(problem) = received {
@@ -249,6 +255,22 @@ impl Scan<'_> {
             problem: format!("its tables cannot be read ({error}), {problem}"),
         }
     }
+}
+
+/// Returns a message that rosbag2 compressed by itself as it was; any other as it is. Plain CDR
+/// starts with a byte of 0.
+fn plain(data: &[u8]) -> Result<Cow<'_, [u8]>, String> {
+    if !data.starts_with(&ZSTD) {
+        return Ok(data.into());
+    }
+    let damaged = |fault| format!("its compression by zstd is damaged ({fault})");
+    let decoder = zstd::Decoder::with_buffer(data).map_err(damaged)?;
+    let mut message = Vec::new();
+    decoder.take(LARGEST as u64 + 1).read_to_end(&mut message).map_err(damaged)?;
+    if message.len() > LARGEST as usize {
+        return Err(format!("it has more than {LARGEST} bytes"));
+    }
+    Ok(message.into())
 }
 
 /// What stopped the reading of messages.

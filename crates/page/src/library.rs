@@ -42,7 +42,8 @@ fn library() -> String {
 
 /// Returns the library compressed with gzip, in base64: 1.9 instead of 4.7 MB in each page.
 pub(super) fn compressed_library() -> String {
-    let mut gzip = GzEncoder::new(Vec::new(), Compression::best());
+    // The best level takes twice as long for 2 % less.
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::new(4));
     let written = gzip.write_all(library().as_bytes()).and_then(|()| gzip.finish());
     STANDARD.encode(written.expect("a vector takes every byte"))
 }

@@ -1,5 +1,8 @@
 //! Whether a model is of use, and carries over to motions that it has not seen.
 
+use reachtube_conform::next_motion::LeftOut;
+use reachtube_recordings::Torque;
+
 use crate::build::Built;
 use crate::choices::{LARGEST_GROWTH, LARGEST_RATIO};
 
@@ -11,6 +14,7 @@ impl Built {
     pub fn is_useful(&self) -> bool {
         self.choices.accept(&self.answer.model)
             && self.growth_not_accepted().is_none()
+            && self.left_out_not_accepted().is_none()
             && self.held_out.part_outside() <= self.choices.largest_outside()
             && self.contradiction().is_none()
     }
@@ -36,12 +40,29 @@ impl Built {
         (is_compared && factor > self.largest_growth()).then_some((joint, factor))
     }
 
+    /// Returns the factor by which the sets would have to grow for a motion that was left out of
+    /// all that was made of the motions, if it is not accepted and the sets have no allowance for
+    /// it. Repeated recordings claim nothing of other motions.
+    pub(crate) fn left_out_not_accepted(&self) -> Option<f64> {
+        let model = &self.answer.model;
+        let preparation = model.preparation.as_ref();
+        let is_repeated = preparation.is_some_and(|done| done.torque == Torque::Compensated);
+        let has_allowance = !self.answer.found.allowance.is_empty();
+        let growth = |left: &LeftOut| left.gauge.unwrap_or(f64::INFINITY);
+        let factor = model.left_out.iter().map(growth).fold(1.0, f64::max);
+        let is_asked = !is_repeated && !has_allowance;
+        (is_asked && factor > self.largest_growth()).then_some(factor)
+    }
+
     /// Returns why a model that was proved and is not vacuous is of no use, in a few words.
     pub(crate) fn why_useless(&self) -> String {
         if !self.choices.accept(&self.answer.model) {
             return "too wide to be of use".into();
         }
         match self.growth_not_accepted() {
+            None if self.left_out_not_accepted().is_some() => {
+                "its sets do not foretell a motion that was left out,".into()
+            }
             None => format!(
                 "{:.1} % of the held-out rows are outside (at most {} % is accepted),",
                 100.0 * self.held_out.part_outside(),

@@ -2,12 +2,17 @@
 //!
 //! The smallest sets enclose what was recorded and nothing more. Each motion is left out in turn,
 //! and the sets of the others say how far it leaves them. If that is more than what is accepted of
-//! motions that are held out, radii that cover all of it are added to the sets, before the held-out
-//! motions are looked at.
+//! motions that are held out, radii are added to the sets, before the held-out motions are looked
+//! at: the least factor of the input's error that covers all motions that were left out, and that
+//! one more motion needs with a probability of 5 % at most, if motions need factors of one normal
+//! distribution.
 
-use reachtube_conform::Answer;
+use reachtube_conform::{Answer, Finding};
 
+use crate::carried_over::{Unseen, unseen};
 use crate::error::Result;
+use crate::findings::not_enclosed;
+use crate::prediction::upper_bound;
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -19,37 +24,66 @@ pub(crate) struct Widened {
     pub allowance: Vec<f64>,
     /// Why.
     pub reason: String,
+    /// A motion that was left out and that no allowance encloses.
+    pub finding: Option<Finding>,
 }
 
+/// An allowance, why, and what speaks against it.
+type Asked = (Vec<f64>, String, Option<Finding>);
+
 impl Widened {
-    /// Finds the sets for windows of `horizon` \[s\], at most `most` of them, and adds an
-    /// allowance: the one that is given, or what each motion that is left out in turn asks for.
+    /// Finds the sets for all windows of `horizon` \[s\], and adds an allowance: the one that is
+    /// given, or what motions ask for that are left out in turn of all that was made of them.
+    ///
+    /// # Errors
+    ///
+    /// As [`Trial::run`] and [`Trial::carried_over`].
+    pub(crate) fn new(trial: &Trial, recordings: &Prepared, horizon: f64) -> Result<Self> {
+        let answer = trial.run(recordings.cut(horizon, usize::MAX)?)?;
+        let left_out = match recordings.from_start {
+            true => unseen(&answer),
+            false => trial.carried_over(&answer, recordings, horizon)?,
+        };
+        let Self { answer, allowance, reason, finding } =
+            Self::with(trial, recordings, answer, &left_out)?;
+        let left_out = left_out.into_iter().map(|unseen| unseen.left_out).collect();
+        Ok(Self { answer: answer.with_left_out(left_out), allowance, reason, finding })
+    }
+
+    /// Does what [`new`](Self::new) does for `most` windows at most, where motions are left out of
+    /// the sets only.
     ///
     /// # Errors
     ///
     /// As [`Trial::run`].
-    pub(crate) fn new(
+    pub(crate) fn of_some(
         trial: &Trial,
         recordings: &Prepared,
         horizon: f64,
         most: usize,
     ) -> Result<Self> {
         let answer = trial.run(recordings.cut(horizon, most)?)?;
-        let (allowance, reason) = match trial.allowance.clone() {
-            Some(allowance) => (allowance, "given".into()),
-            // What is held out of repeated recordings is of the same motions.
-            None if recordings.from_start => {
-                (Vec::new(), "for the motions that were recorded".into())
-            }
-            None => asked(&answer, trial.largest_outside),
-        };
-        Self::with(answer, allowance, reason)
+        let left_out = unseen(&answer);
+        Self::with(trial, recordings, answer, &left_out)
     }
 
-    fn with(answer: Answer, allowance: Vec<f64>, reason: String) -> Result<Self> {
+    fn with(
+        trial: &Trial,
+        recordings: &Prepared,
+        answer: Answer,
+        left_out: &[Unseen],
+    ) -> Result<Self> {
+        let (allowance, reason, finding) = match trial.allowance.clone() {
+            Some(allowance) => (allowance, "given".into(), None),
+            // What is held out of repeated recordings is of the same motions.
+            None if recordings.from_start => {
+                (Vec::new(), "for the motions that were recorded".into(), None)
+            }
+            None => asked(&answer, left_out, [trial.largest_outside, trial.largest_growth]),
+        };
         let answer =
             if allowance.is_empty() { answer } else { answer.widened(allowance.clone())? };
-        Ok(Self { answer, allowance, reason })
+        Ok(Self { answer, allowance, reason, finding })
     }
 
     /// Returns the allowance in words.
@@ -65,32 +99,41 @@ impl Widened {
     }
 }
 
-/// Returns the allowance that the motions ask for which were left out in turn, rounded up to three
-/// digits, and why; empty if no more than the part `most` of their rows leaves the sets of the
-/// others.
-fn asked(answer: &Answer, most: f64) -> (Vec<f64>, String) {
-    let all = &answer.found.left_out;
+/// Returns the allowance that motions ask for which were left out in turn, rounded up to three
+/// digits; empty if no more than a part of their rows leaves the sets of the others, and none needs
+/// more than a factor: the two limits `most`.
+fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     if all.len() < 2 {
-        return (Vec::new(), "there is a single motion or part".into());
+        return (Vec::new(), "there is a single motion or part".into(), None);
     }
-    let rows: usize = all.iter().map(|left| left.rows).sum();
-    let outside: usize = all.iter().filter_map(|left| left.outside).sum();
+    let left_out = || all.iter().map(|unseen| &unseen.left_out);
+    let rows: usize = left_out().map(|left| left.rows).sum();
+    let outside: usize = left_out().filter_map(|left| left.outside).sum();
     let part = outside as f64 / rows.max(1) as f64;
-    let leave = format!(
-        "of {} motions or parts left out in turn, {:.1} % of the rows leave the sets of the others",
-        all.len(),
-        100.0 * part
-    );
-    match &answer.found.allowance_needed {
-        _ if part <= most => {
-            (Vec::new(), format!("{leave}; at most {} % is accepted", 100.0 * most))
-        }
-        None => (Vec::new(), format!("{leave}, and no allowance encloses them")),
-        Some(allowance) => {
-            let allowance = allowance.iter().map(|radius| rounded_up(*radius)).collect();
-            (allowance, format!("{leave}; with the allowance none do"))
-        }
+    let growth = left_out().map(|left| left.gauge.unwrap_or(f64::INFINITY)).fold(1.0, f64::max);
+    let [leave, grow] = [
+        format!("{:.1} % of the rows leave the sets of the others", 100.0 * part),
+        format!("one needs {growth:.1} times these sets"),
+    ];
+    let leave = format!("of {} motions or parts left out in turn, {leave}, and {grow}", all.len());
+    if part <= most[0] && growth <= most[1] {
+        let accepted = format!("at most {} % and {} are accepted", 100.0 * most[0], most[1]);
+        return (Vec::new(), format!("{leave}; {accepted}"), None);
     }
+    let factors: Option<Vec<f64>> = all.iter().map(|unseen| unseen.factor).collect();
+    let Some((factors, needed)) = factors.zip(answer.found.allowance_needed.as_ref()) else {
+        let without = all.iter().find(|unseen| unseen.factor.is_none());
+        let finding = without.map(|unseen| not_enclosed(&unseen.left_out));
+        return (Vec::new(), format!("{leave}; no allowance encloses them"), finding);
+    };
+    let factor = upper_bound(&factors);
+    let allowance = needed.shape.iter().map(|radius| rounded_up(factor * radius)).collect();
+    let largest = factors.iter().copied().fold(0.0, f64::max);
+    let reason = format!(
+        "{leave}; they need up to {largest:.2} times the error of the input, and {factor:.2} times \
+         is the bound at 95 % for one more"
+    );
+    (allowance, reason, None)
 }
 
 /// Rounds up to three digits.
@@ -157,7 +200,12 @@ mod tests {
                      inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
         let robot = Robot::from_toml(robot, "pendulum").unwrap();
         let all = [("a", 0.1), ("b", 0.2), ("c", 0.3)];
-        let (allowance, reason) = asked(&answer(&robot, &all), 0.0);
+        let asked = |most: f64| {
+            let answer = answer(&robot, &all);
+            asked(&answer, &unseen(&answer), [most, f64::INFINITY])
+        };
+        let (allowance, reason, finding) = asked(0.0);
+        assert_eq!(finding, None);
         assert_eq!(allowance[..2], [0.0; 2], "the noise limits X0");
         assert!(allowance[2] > 0.01, "{allowance:?}, {reason}");
         let mut outside = 0;
@@ -172,7 +220,7 @@ mod tests {
             assert!(check.holds(), "{}: {:?}", all[left_out].0, check.verdict.violations);
         }
         assert!(outside > 0, "without the allowance some motion leaves the sets");
-        assert!(asked(&answer(&robot, &all), 1.0).0.is_empty(), "all rows may leave the sets");
+        assert!(asked(1.0).0.is_empty(), "all rows may leave the sets");
         let wrong = answer(&robot, &all).widened(vec![0.0; 2]).unwrap_err().to_string();
         assert!(wrong.contains("allowance"), "{wrong}");
     }

@@ -119,15 +119,19 @@ impl Decided<'_> {
     ) -> Result<Built> {
         let Self { given, split, .. } = *self;
         let Evidence { torque, settings, cut_off, trial, .. } = *self.evidence;
-        let Nominal { robot, logs, findings, .. } = chosen;
+        let Nominal { robot, logs, findings, is_identified, .. } = chosen;
         let mut findings = unless_accepted(findings, given);
         findings.extend(unknown_motors(&robot, torque));
-        let mut trial = Trial { robot: robot.clone(), ..trial.clone() };
+        let has_folds = is_identified && torque != Torque::Compensated;
+        let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
+        let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
         let (motions, from_start) = (split.motion_names(), torque == Torque::Compensated);
         let recordings =
             Prepared { logs: &logs, motions: &motions, from_start, simulated, origins: None };
         let found = sets(&mut chooser, &mut trial, &recordings);
-        let (mut answer, horizons) = found.map_err(|error| error.because(&findings))?;
+        let (found, horizons) = found.map_err(|error| error.because(&findings))?;
+        let Widened { mut answer, finding, .. } = found;
+        findings.extend(finding);
         let choices = &chooser.choices;
         answer.model = answer.model.with_preparation(preparation(choices, torque));
         let wide =
@@ -211,6 +215,8 @@ fn first_choices<'a, 'b: 'a>(
         nominal,
         allowance,
         largest_outside: chooser.choices.largest_outside(),
+        largest_growth: chooser.choices.largest_growth.unwrap_or(LARGEST_GROWTH),
+        folds: &[],
         fit,
         progress,
         journal,
@@ -223,7 +229,7 @@ fn sets(
     chooser: &mut Chooser,
     trial: &mut Trial,
     recordings: &Prepared,
-) -> Result<(Answer, Vec<HorizonWidths>)> {
+) -> Result<(Widened, Vec<HorizonWidths>)> {
     let largest = chooser.choices.largest_ratio.unwrap_or(LARGEST_RATIO);
     chooser.choices.largest_ratio = Some(largest);
     chooser.choices.largest_growth.get_or_insert(LARGEST_GROWTH);
@@ -246,7 +252,7 @@ fn sets(
     }
     let (found, horizon, reason) = match chooser.choices.horizon {
         Some(horizon) => {
-            let found = Widened::new(trial, recordings, horizon, usize::MAX)?;
+            let found = Widened::new(trial, recordings, horizon)?;
             (found, horizon, "given".to_string())
         }
         None => {
@@ -258,8 +264,8 @@ fn sets(
     chooser.choose("horizon", format!("{horizon} s"), reason);
     chooser.choices.horizon = Some(horizon);
     chooser.choose("allowance", found.words(), &found.reason);
-    chooser.choices.allowance = Some(found.allowance);
-    Ok((found.answer, horizons))
+    chooser.choices.allowance = Some(found.allowance.clone());
+    Ok((found, horizons))
 }
 
 /// Finds the sets over all windows of the longest horizon at which none is wider beside the motion
@@ -273,7 +279,7 @@ fn longest_of_all(
 ) -> Result<(Widened, f64)> {
     let mut horizon = longest(tried, largest).horizon;
     loop {
-        let run = || Widened::new(trial, recordings, horizon, usize::MAX);
+        let run = || Widened::new(trial, recordings, horizon);
         let shorter = tried.iter().rev().find(|other| other.horizon < horizon);
         let Some(shorter) = shorter.filter(|shorter| shorter.worst().1 <= largest) else {
             return Ok((run()?, horizon));

@@ -1,6 +1,7 @@
 //! What the recordings say about themselves and the robot, as findings.
 
 use reachtube_conform::Finding;
+use reachtube_conform::next_motion::LeftOut;
 use reachtube_conform::result::{Code, Severity};
 use reachtube_identify::{Implausible, WrongColumns};
 
@@ -21,6 +22,16 @@ pub(crate) fn implausible(result: &Implausible) -> Finding {
         text += "; or the description is of another robot";
     }
     Finding { severity, ..contradiction(&text) }
+}
+
+/// Makes the warning that no allowance of the sets encloses a motion that was left out.
+pub(crate) fn not_enclosed(left_out: &LeftOut) -> Finding {
+    let motion = &left_out.motion;
+    let text = format!(
+        "no allowance of U makes the sets of the other motions enclose {motion}, which was left \
+         out: they do not foretell it; record more motions, or hold it out to look at it"
+    );
+    Finding { place: Some(motion.clone()), ..warning(Code::LeftOut, &text) }
 }
 
 /// Makes a warning of a clause.

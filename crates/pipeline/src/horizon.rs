@@ -85,7 +85,7 @@ pub(crate) fn try_horizon(
     let name = format!("{horizon} s, {most} windows, {}", trial.name());
     // JSON has no infinite ratio, as where a set was lost.
     let (ratios, reason) =
-        trial.journal.step(&name, || match Widened::new(trial, recordings, horizon, most) {
+        trial.journal.step(&name, || match Widened::of_some(trial, recordings, horizon, most) {
             Ok(found) => Ok((ratios(&found.answer.found.usefulness.joints), None)),
             Err(error) if trial.progress.is_cancelled() => Err(error),
             Err(error) => Ok((Vec::new(), Some(error.to_string()))),

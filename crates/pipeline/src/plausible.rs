@@ -21,14 +21,38 @@ const MOVES: f64 = 0.05;
 /// Samples of a recording that are looked at, at most.
 const SAMPLES: usize = 2000;
 
-/// Returns what contradicts the robot's description in the torques of filtered recordings. The
-/// torques must still contain gravity. A description that is no body, or whose links have no mass,
-/// has no torques to compare with.
-pub(crate) fn contradictions(robot: &Robot, kind: Torque, logs: &[PreparedLog]) -> Vec<Finding> {
+/// The joints whose torque a description explains, up to sign and size, and all joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Explained {
+    joints: usize,
+    of: usize,
+}
+
+impl Explained {
+    /// Returns a finding if the torques of most joints do not follow the description.
+    pub(crate) fn finding(self) -> Option<Finding> {
+        let Self { joints, of } = self;
+        let text = format!(
+            "the description explains the torque of {joints} of {of} joints only: it may be of \
+             another robot, or its joints may be in another order"
+        );
+        let numbers = [("joints".to_string(), joints as f64)].into();
+        (2 * joints < of).then(|| Finding { numbers, ..contradiction(&text) })
+    }
+}
+
+/// Returns what contradicts the robot's description in the torques of filtered recordings, and how
+/// many joints' torques it explains. The torques must still contain gravity. A description that is
+/// no body, or whose links have no mass, has no torques to compare with.
+pub(crate) fn contradictions(
+    robot: &Robot,
+    kind: Torque,
+    logs: &[PreparedLog],
+) -> (Vec<Finding>, Option<Explained>) {
     let n = robot.joint_count();
     let is_bare = robot.inertial_parameters().iter().all(|parameter| *parameter == 0.0);
     if is_bare || robot.check_physical().is_err() || logs.is_empty() {
-        return Vec::new();
+        return (Vec::new(), None);
     }
     // Sensors behind the gears do not show what the motors' inertia takes.
     let of_motors = |joint: usize, qdd: f64| match kind {
@@ -47,6 +71,8 @@ pub(crate) fn contradictions(robot: &Robot, kind: Torque, logs: &[PreparedLog]) 
         }
     }
     let fit = |joint: usize| Correlation::new(&needed[joint], &recorded[joint]);
+    let is_explained = |joint: &usize| fit(*joint).value.abs() > OPPOSITE;
+    let explained = Explained { joints: (0..n).filter(is_explained).count(), of: n };
     let mut found = Vec::new();
     for joint in (0..n).filter(|joint| fit(*joint).value < -OPPOSITE) {
         let name = &robot.joints()[joint].name;
@@ -75,7 +101,7 @@ pub(crate) fn contradictions(robot: &Robot, kind: Torque, logs: &[PreparedLog]) 
         let numbers = [("factor".to_string(), median)].into();
         found.push(Finding { numbers, remedy: Some(remedy), ..contradiction(&text) });
     }
-    found
+    (found, Some(explained))
 }
 
 /// Returns the joints that move while their torque stays the same in every sample, as a finding.
@@ -175,11 +201,20 @@ mod tests {
         let found = |factor: f64| -> Vec<String> {
             let (robot, raw) = pendulum(factor);
             let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
-            contradictions(&robot, Torque::Motor, &[log]).iter().map(ToString::to_string).collect()
+            let (found, explained) = contradictions(&robot, Torque::Motor, &[log]);
+            assert_eq!(explained, Some(Explained { joints: 1, of: 1 }));
+            found.iter().map(ToString::to_string).collect()
         };
         assert_eq!(found(1.0), Vec::<String>::new());
         assert!(found(-1.0)[0].starts_with("The torque of hinge is opposite"), "{:?}", found(-1.0));
         assert!(found(0.1)[0].contains("0.10 times"), "{:?}", found(0.1));
+    }
+
+    #[test]
+    fn a_description_that_explains_few_joints_is_named() {
+        let text = |joints: usize| Explained { joints, of: 6 }.finding().map(|found| found.text);
+        assert_eq!(text(3), None);
+        assert!(text(1).is_some_and(|text| text.contains("1 of 6 joints only")));
     }
 
     #[test]

@@ -15,7 +15,7 @@ use reachtube_robot::Robot;
 use crate::error::Result;
 use crate::findings::implausible;
 use crate::held_out::Recording;
-use crate::plausible::{contradictions, unmeasured};
+use crate::plausible::{Explained, contradictions, unmeasured};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -70,9 +70,14 @@ impl Evidence<'_> {
     ///
     /// As [`identify`], if the description is no alternative.
     pub(crate) fn choose(&self, described: &Robot, given: Option<bool>) -> Result<Nominal> {
-        let contradictions = self.contradictions(described)?;
+        let (mut contradictions, explained) = self.contradictions(described)?;
         let chosen = self.chosen(described, given);
         let mut chosen = chosen.map_err(|error| error.because(&contradictions))?;
+        // An identification blames columns if the description is of another robot.
+        let is_wrong = chosen.findings.iter().any(|other| other.severity == Severity::Failure);
+        if is_wrong && contradictions.is_empty() {
+            contradictions.extend(explained.and_then(Explained::finding));
+        }
         // An identification tells exchanged columns, and the description a sign and a scale.
         if !chosen.is_swapped && !contradictions.is_empty() {
             chosen.findings.retain(|finding| finding.severity < Severity::Failure);
@@ -140,14 +145,15 @@ impl Evidence<'_> {
         Ok(Nominal { reason, findings, is_swapped, ..best })
     }
 
-    /// Returns what contradicts the description in the recorded torques.
-    fn contradictions(&self, described: &Robot) -> Result<Vec<Finding>> {
+    /// Returns what contradicts the description in the recorded torques, and how many joints'
+    /// torques it explains.
+    fn contradictions(&self, described: &Robot) -> Result<(Vec<Finding>, Option<Explained>)> {
         let logs: Vec<&RawLog> = self.motions.iter().map(|motion| &*motion.log).collect();
         if let Some(finding) = unmeasured(described, &logs) {
-            return Ok(vec![finding]);
+            return Ok((vec![finding], None));
         }
         if self.torque == Torque::Compensated {
-            return Ok(Vec::new());
+            return Ok((Vec::new(), None));
         }
         let raw: Vec<RawLog> =
             self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
@@ -157,6 +163,32 @@ impl Evidence<'_> {
 
     /// Identifies the robot from what is not held out.
     pub(crate) fn identified(&self, described: &Robot) -> Result<Nominal> {
+        let (robot, implausible_results) = self.identify(described, "identify")?;
+        let nominal = self.prepared(&robot)?;
+        let findings = implausible_results.iter().map(implausible).collect();
+        let swapped = |result: &Implausible| result.columns == Some(WrongColumns::Swapped);
+        let is_swapped = implausible_results.iter().any(swapped);
+        Ok(Nominal { is_identified: true, findings, is_swapped, ..nominal })
+    }
+
+    /// Identifies the robot from what is not held out and shows none of some motions, and prepares
+    /// all recordings for it.
+    pub(crate) fn identified_without(
+        &self,
+        described: &Robot,
+        motions: &[&str],
+    ) -> Result<Nominal> {
+        let is_left_out = |recording: &&Recording| motions.contains(&&*recording.motion);
+        let others = self.motions.iter().filter(|recording| !is_left_out(recording));
+        let others: Vec<Recording> = others.cloned().collect();
+        let (rest, one_joint) = (self.rest.clone(), self.one_joint.clone());
+        let evidence = Evidence { motions: &others, rest, one_joint, ..*self };
+        let name = format!("identify without {}", motions.join(", "));
+        self.prepared(&evidence.identify(described, &name)?.0)
+    }
+
+    /// Identifies the robot, which is the step `name` of the job.
+    fn identify(&self, described: &Robot, name: &str) -> Result<(Robot, Vec<Implausible>)> {
         let settings = IdentifySettings {
             rest: self.rest.clone(),
             friction: self.one_joint.clone(),
@@ -170,15 +202,11 @@ impl Evidence<'_> {
             },
             ..IdentifySettings::default()
         };
-        let (description, implausible_results) = self.trial.journal.step("identify", || {
+        let (description, implausible_results) = self.trial.journal.step(name, || {
             let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
             Ok((found.description, found.implausible))
         })?;
-        let nominal = self.prepared(&Robot::from_description(&description)?)?;
-        let findings = implausible_results.iter().map(implausible).collect();
-        let swapped = |result: &Implausible| result.columns == Some(WrongColumns::Swapped);
-        let is_swapped = implausible_results.iter().any(swapped);
-        Ok(Nominal { is_identified: true, findings, is_swapped, ..nominal })
+        Ok((Robot::from_description(&description)?, implausible_results))
     }
 
     /// Prepares the motions for a robot.

@@ -46,7 +46,8 @@ impl Built {
                 .verdict
                 .insert(0, format!("not acceptable: {}", finding.written_for(front_end)));
         }
-        summary.verdict.extend(self.moved());
+        // What was mended in the recordings comes before what was made of them.
+        summary.verdict.splice(0..0, self.moved());
         if !self.is_useful() {
             let findings = self.answer.model.findings().into_iter();
             let causes = findings.filter(|finding| finding.code == Code::Cause);

@@ -2,13 +2,14 @@
 
 use reachtube_abstraction::ExpansionPoint;
 use reachtube_conform::settings::{Equations, NominalStart};
-use reachtube_conform::{Answer, FitSettings, Job, Noise, Progress, Settings};
+use reachtube_conform::{Answer, FitSettings, Job, Noise, Problem, Progress, Settings};
 use reachtube_files::hex;
 use reachtube_recordings::{MemoryRuns, Torque};
 use reachtube_robot::Robot;
 use sha2::{Digest, Sha256};
 
 use crate::error::Result;
+use crate::fold::Fold;
 use crate::journal::Journal;
 
 /// What a conformance over windows needs besides the windows.
@@ -26,8 +27,12 @@ pub(crate) struct Trial<'a> {
     pub nominal: NominalStart,
     /// What is added to the radii of X0 and U, 3n, if it is given.
     pub allowance: Option<Vec<f64>>,
-    /// The part of the rows of motions left out that may leave the sets without an allowance.
+    /// The part of the rows of motions left out that may leave the sets without an allowance, and
+    /// the factor that one of them may need.
     pub largest_outside: f64,
+    pub largest_growth: f64,
+    /// Robots that were identified without some motions, which these are compared with.
+    pub folds: &'a [Fold],
     /// What is fitted.
     pub fit: Option<FitSettings>,
     /// Who may cancel the job.
@@ -37,7 +42,7 @@ pub(crate) struct Trial<'a> {
 }
 
 /// An observer of a job of many trials, who cancels each of them and counts none.
-struct OnlyCancels<'a>(&'a dyn Progress);
+pub(crate) struct OnlyCancels<'a>(&'a dyn Progress);
 
 impl Progress for OnlyCancels<'_> {
     fn is_cancelled(&self) -> bool {
@@ -54,12 +59,30 @@ impl Trial<'_> {
         format!("{equations:?} about {expansion:?}, {fit:?}, {allowance:?}, robot {robot}")
     }
 
+    /// Returns the observer of one of the trials.
+    pub(crate) fn only_cancels(&self) -> OnlyCancels<'_> {
+        OnlyCancels(self.progress)
+    }
+
     /// Finds the sets for windows.
     ///
     /// # Errors
     ///
     /// As [`Job::run`].
     pub(crate) fn run(&self, windows: MemoryRuns) -> Result<Answer> {
+        Ok(self.job(windows)?.run(&self.only_cancels())?)
+    }
+
+    /// Reads windows.
+    ///
+    /// # Errors
+    ///
+    /// As [`Job::read`].
+    pub(crate) fn read(&self, windows: MemoryRuns) -> Result<Problem> {
+        Ok(self.job(windows)?.read(&self.only_cancels())?)
+    }
+
+    fn job(&self, windows: MemoryRuns) -> Result<Job> {
         let n = self.robot.joint_count();
         let settings = Settings {
             expansion_point: ExpansionPoint::from_values(&self.expansion, n)?,
@@ -69,9 +92,7 @@ impl Trial<'_> {
             equations: self.equations,
             ..Settings::new(Torque::Compensated, n)
         };
-        let job = Job::new(self.robot.clone(), windows, Torque::Compensated)
-            .settings(settings)
-            .fit(self.fit.clone());
-        Ok(job.run(&OnlyCancels(self.progress))?)
+        let job = Job::new(self.robot.clone(), windows, Torque::Compensated);
+        Ok(job.settings(settings).fit(self.fit.clone()))
     }
 }

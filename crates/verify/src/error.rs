@@ -65,6 +65,9 @@ pub enum Error {
     /// A robot could not be read.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
+    /// Recordings could not be read.
+    #[error(transparent)]
+    Recordings(#[from] reachtube_recordings::Error),
     /// The motion of a model could not be computed.
     #[error(transparent)]
     Conform(#[from] reachtube_conform::Error),

@@ -1,38 +1,41 @@
-//! `reachtube stop`: how far a robot moves after its brakes were applied.
+//! `reachtube stop`: how far a robot moves after a stop.
 
 use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use reachtube::Keep;
-use reachtube::number::at_least;
+use reachtube::page::{STOP_PAGE_FILE, StopPage, write_stop_html};
+use reachtube::recordings::{DataSet, RunSource};
 use reachtube::robot::JointKind;
-use reachtube::verify::{Brakes, WorstStop, stops_along};
-use serde_json::json;
+use reachtube::verify::{Brakes, Category, StopQuestion, StopStudy, stop_study};
+use reachtube::write;
 
 use crate::data_arguments::ModelArguments;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
-use crate::table::table;
 
 const HELP: &str = "\
 Example:
-  reachtube stop --model model.json --data recordings --suites A --brakes brakes.toml
+  reachtube stop --model model.json --data recordings --suites A --brakes brakes.toml --out stops
 
 brakes.toml gives the least and the greatest torque of each brake, in N m at the output side of the
 gear, and when the brakes hold at the earliest and at the latest, in s (docs/verify.md):
   torque = [[40, 60], [40, 60], [40, 60], [40, 60], [20, 30], [20, 30]]
   delay = [0.01, 0.03]
+Category 1 needs the greatest deceleration of each joint too, in rad/s²:
+  deceleration = [4, 4, 4, 6, 6, 6]
 
-Prints the greatest proved way and the latest proved standstill of each joint, for stops of
-category 0 (drives off, brakes on) from every recorded sample.
+Prints the greatest proved way and the latest proved standstill of each joint, for stops from every
+recorded sample. With --out, the table of ISO 10218-1, Annex B, and a page: stop.html.
 
-Exit codes: 0 every stop is proved, 2 error, 3 not proved from some samples.";
+Exit codes: 0 every stop is proved, 1 a recorded stop is not within the proved one, 2 error,
+3 not proved from some samples.";
 
-/// Enclose how far and how long a robot moves after a stop by its brakes
+/// Enclose how far and how long a robot moves after a stop
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -41,65 +44,73 @@ pub(crate) struct Arguments {
     /// Brakes: a TOML file with torque and delay
     #[arg(long, value_name = "FILE")]
     pub brakes: PathBuf,
+    /// Stop category: 0 drives off and brakes on, 1 after a controlled deceleration
+    #[arg(long, value_name = "0|1", default_value_t = 0)]
+    #[arg(value_parser = clap::value_parser!(u8).range(0..=1))]
+    pub category: u8,
     /// Stop from every Nth sample
     #[arg(long, value_name = "N", default_value_t = 1)]
     #[arg(value_parser = RangedU64ValueParser::<usize>::new().range(1..))]
     pub every: usize,
+    /// Recorded stops: a folder with runs.csv; each recording begins with its stop
+    #[arg(long, value_name = "FOLDER")]
+    pub stops: Option<PathBuf>,
+    /// Folder for the page with the table of ISO 10218-1, Annex B
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    let page = args.out.as_ref().map(|folder| folder.join(STOP_PAGE_FILE));
+    if let Some(page) = &page {
+        write::try_at(page)?;
+        output::claim(page)?;
+    }
     let text =
         reachtube_files::read_text(&args.brakes, "write the brakes, as docs/verify.md says")?;
     let opened = OpenedCheck::new(&args.model, None, Keep::Needed)?;
     let robot = opened.problem.robot();
     let brakes = Brakes::from_toml(&text, &args.brakes.display().to_string(), robot)?;
-    opened.print_notes(&args.model.data);
-    let all = {
-        let _bar = Progress::new();
-        stops_along(&opened.problem, &brakes, args.every)
+    let sets = &opened.tube().sets;
+    let category = match args.category {
+        0 => Category::Zero,
+        _ => Category::one(&brakes, &sets.input_set)
+            .ok_or_else(|| Error::NoDeceleration { brakes: args.brakes.clone() })?,
     };
-    let proved = all.iter().all(|worst| worst.proved == worst.samples);
-    let outcome = if proved { Outcome::Done } else { Outcome::Undecided };
+    let recorded = args.stops.as_ref().map(DataSet::open).transpose()?;
+    opened.print_notes(&args.model.data);
+    let question = StopQuestion {
+        brakes: &brakes,
+        category: &category,
+        every: args.every,
+        table: page.is_some(),
+        recorded: recorded.as_ref().map(|data| data as &dyn RunSource),
+    };
+    let study = {
+        let _bar = Progress::new();
+        stop_study(&opened.problem, sets, &question)?
+    };
+    if let Some(path) = &page {
+        let content = StopPage { robot, model: &opened.model, brakes: &brakes, study: &study };
+        let mut html = Vec::new();
+        write_stop_html(&content, &mut html)?;
+        write::atomically(path, |file| file.write_all(&html))?;
+        output::wrote(path);
+    }
+    let outcome = outcome(&study);
     if json {
-        output::print_json(&json!({ "stops": all }))?;
+        output::print_json(&study)?;
     } else {
-        let kinds = robot.kinds();
-        let unit = JointKind::any_unit(&kinds, JointKind::position_unit);
-        output::print_verdict(&text_of(&all, &unit), &outcome)?;
+        let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
+        output::print_verdict(&study.text(&unit), &outcome)?;
     }
     Ok(outcome)
 }
 
-fn text_of(all: &[WorstStop], unit: &str) -> String {
-    let (proved, samples) = all
-        .iter()
-        .fold((0, 0), |(proved, samples), worst| (proved + worst.proved, samples + worst.samples));
-    let joints = all.iter().filter(|worst| worst.suite == all[0].suite).count().max(1);
-    let verdict = if proved == samples {
-        format!(
-            "stands: from each of {} samples every joint comes to a standstill",
-            samples / joints
-        )
-    } else {
-        format!(
-            "not proved: from {} of {} samples no standstill is proved; the brakes may be too weak \
-             for the load, or the recorded states too far apart",
-            (samples - proved) / joints,
-            samples / joints
-        )
-    };
-    let way = format!("greatest way [{unit}]");
-    let header = ["suite", "joint", &way, "from [s]", "latest standstill [s]", "from [s]"];
-    let bound = |value: f64| if value.is_finite() { at_least(value) } else { "none".into() };
-    let row = |worst: &WorstStop| {
-        vec![
-            worst.suite.clone(),
-            worst.joint.clone(),
-            bound(worst.way),
-            format!("{:.3}", worst.way_from),
-            bound(worst.time),
-            format!("{:.3}", worst.time_from),
-        ]
-    };
-    format!("{verdict}\n\n{}", table(&header, &all.iter().map(row).collect::<Vec<_>>()))
+fn outcome(study: &StopStudy) -> Outcome {
+    match study.outside() {
+        Some(_) => Outcome::NotConformant,
+        None if study.is_proved() => Outcome::Done,
+        None => Outcome::Undecided,
+    }
 }

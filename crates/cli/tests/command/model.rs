@@ -235,15 +235,18 @@ fn a_log_of_standstill_is_refused() {
 
 #[test]
 #[ignore = "needs the recordings in ../shared"]
-fn logs_of_three_arms_become_useful_models() {
+fn logs_of_four_arms_become_useful_models() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let data = data.canonicalize().unwrap();
     let lab = Lab::new();
     let shared = data.display();
     let pendulum = format!("{shared}/double_pendulum/acrobot.urdf");
+    let panda = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/identify/panda-robot.toml");
+    let panda = panda.canonicalize().unwrap();
     let arms = [
         (format!("{shared}/ur10e/ur10e.urdf"), "ur10e/excitation", "motor", 0.3),
-        (pendulum, "double_pendulum/openloop", "motor", 0.2),
+        (pendulum, "double_pendulum/openloop", "motor", 0.1),
+        (panda.display().to_string(), "panda/excitation", "link", 0.5),
         ("lwa4p".into(), "schunk_lwa4p", "compensated", 0.2),
     ];
     for (robot, logs, torque, horizon) in arms {
@@ -258,7 +261,7 @@ fn logs_of_three_arms_become_useful_models() {
         assert!(part < 0.01, "{part}");
         // The windows of all logs, prepared again: only what was held out may lie outside. One log
         // of the pendulum moves a single joint, and is neither among the windows nor held out.
-        if logs.ends_with("excitation") {
+        if logs.ends_with("ur10e/excitation") {
             let check = lab.run(&format!("check --model arm/model.json --data {shown} --json"));
             assert_eq!(json(&check.stdout)["violations"]["count"], held_out["outside"]);
         }

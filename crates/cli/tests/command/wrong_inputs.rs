@@ -157,9 +157,8 @@ fn a_log_that_is_a_turn_away_is_moved_and_named() {
         }
     });
     let run = lab.run(MODEL);
-    // After the verdict, which takes one line or two. Held-out motions may leave sets of so few:
-    // that is another answer, no error.
-    let text = run.stdout.lines().skip(1).take(3).collect::<String>();
+    // Held-out motions may leave sets of so few: that is another answer, no error.
+    let text = run.stdout.lines().next().unwrap_or_default();
     assert!(run.code != 2 && text.contains("log_2.csv: shoulder is a turn away"), "{run:#?}");
     let answer = lab.run(&format!("{MODEL} --json")).json();
     fits("model", &answer);
@@ -181,7 +180,8 @@ fn rewrite(lab: &Lab, folder: &Path, change: &dyn Fn(&mut [f64], usize, usize)) 
         for row in rows.lines() {
             let mut cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap()).collect();
             change(&mut cells, number, joints);
-            let cells: Vec<String> = cells.iter().map(f64::to_string).collect();
+            let cell = |cell: &f64| if cell.is_nan() { String::new() } else { cell.to_string() };
+            let cells: Vec<String> = cells.iter().map(cell).collect();
             writeln!(written, "{}", cells.join(",")).unwrap();
         }
         let name = file.file_name().unwrap().to_str().unwrap();
@@ -189,44 +189,65 @@ fn rewrite(lab: &Lab, folder: &Path, change: &dyn Fn(&mut [f64], usize, usize)) 
     }
 }
 
+/// Changes one row of a recording, with its number and the number of joints.
+type Change<'a> = &'a dyn Fn(&mut [f64], usize, usize);
+
+/// What is wrong with recordings that are otherwise right: the cause that is named, the
+/// exit code, and the change.
+const WRONG: [(&str, i32, Change); 9] = [
+    ("the times look like milliseconds", 2, &|row, _, _| row[0] *= 1e3),
+    ("give q in rad", 2, &|row, _, n| {
+        row[1..=2 * n].iter_mut().for_each(|cell| *cell *= 360.0 / TAU);
+    }),
+    ("at rest", 2, &|row, _, n| row[1..=2 * n].iter_mut().for_each(|cell| *cell *= 1e-3)),
+    ("sign", 3, &|row, _, n| row[2 * n + 2] *= -1.0),
+    ("swapped", 3, &|row, _, n| {
+        let first = (n - 1).min(2);
+        [0, n, 2 * n].iter().for_each(|at| row.swap(first + at, first + at + 1));
+    }),
+    ("times what the description needs", 3, &|row, _, n| {
+        row[2 * n + 1..=3 * n].iter_mut().for_each(|cell| *cell /= 12.0);
+    }),
+    ("is a turn away from other recordings", 0, &|row, number, _| {
+        row[1] += if number == 2 { TAU } else { 0.0 };
+    }),
+    ("|q| reaches 1.0e300", 2, &|row, number, _| {
+        if number == 1 && row[0] > 5.0 {
+            row[2] = 1e300;
+        }
+    }),
+    ("if no velocity was measured, delete the columns of qd", 2, &|row, _, n| {
+        row[n + 1..=2 * n].fill(f64::NAN);
+    }),
+];
+
+/// Makes a model of recordings that were changed, and asserts that the first sentence of the answer
+/// names the cause.
+fn names_the_cause(robot: &str, logs: &Path, (cause, code, change): (&str, i32, Change)) {
+    let lab = Lab::new();
+    rewrite(&lab, logs, change);
+    let run = lab.run(&MODEL.replace("arm.toml", robot));
+    let answer = if run.code == 2 { &run.stderr } else { &run.stdout };
+    // A sentence may take two lines.
+    let first = answer.lines().take(2).collect::<Vec<_>>().join(" ");
+    let first = first.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(run.code == code && first.contains(cause), "{cause}: {run:#?}");
+}
+
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn recordings_of_two_arms_that_are_made_wrong_are_not_accepted() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let data = data.canonicalize().unwrap();
-    type Case<'a> = (&'a str, i32, &'a dyn Fn(&mut [f64], usize, usize));
-    let cases: [Case; 7] = [
-        ("the times look like milliseconds", 2, &|row, _, _| row[0] *= 1e3),
-        ("give q in rad", 2, &|row, _, n| {
-            row[1..=2 * n].iter_mut().for_each(|cell| *cell *= 360.0 / TAU);
-        }),
-        ("at rest", 2, &|row, _, n| row[1..=2 * n].iter_mut().for_each(|cell| *cell *= 1e-3)),
-        ("sign", 3, &|row, _, n| row[2 * n + 2] *= -1.0),
-        ("swapped", 3, &|row, _, n| {
-            let first = (n - 1).min(2);
-            [0, n, 2 * n].iter().for_each(|at| row.swap(first + at, first + at + 1));
-        }),
-        ("times what the description needs", 3, &|row, _, n| {
-            row[2 * n + 1..=3 * n].iter_mut().for_each(|cell| *cell /= 12.0);
-        }),
-        ("is a turn away from other recordings", 0, &|row, number, _| {
-            row[1] += if number == 2 { TAU } else { 0.0 };
-        }),
-    ];
+    let of = |path: &str| data.join(path).display().to_string();
     let arms = [
-        ("ur10e/ur10e.urdf", "ur10e/excitation"),
-        ("double_pendulum/acrobot.urdf", "double_pendulum/openloop"),
+        (of("ur10e/ur10e.urdf"), "ur10e/excitation"),
+        (of("double_pendulum/acrobot.urdf"), "double_pendulum/openloop"),
     ];
     for (robot, logs) in arms {
-        for (cause, code, change) in cases {
-            let lab = Lab::new();
-            rewrite(&lab, &data.join(logs), change);
-            let robot = data.join(robot).display().to_string();
-            let run = lab.run(&MODEL.replace("arm.toml", &robot));
-            let all =
-                [&run.stderr, &run.stdout].map(|text| text.lines().take(4).collect::<String>());
-            assert_eq!(run.code, code, "{cause}: {run:#?}");
-            assert!(all.concat().contains(cause), "{cause}: {run:#?}");
-        }
+        WRONG.into_iter().for_each(|wrong| names_the_cause(&robot, &data.join(logs), wrong));
     }
+    // The description of another arm with as many joints.
+    let other = ("it may be of another robot", 3, &(|_: &mut [f64], _, _| ()) as Change);
+    names_the_cause("lwa4p", &data.join("ur10e/excitation"), other);
 }

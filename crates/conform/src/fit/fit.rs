@@ -16,6 +16,7 @@ use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction
 use crate::fit::search::{FoundNumbers, SearchEffort};
 use crate::fit::working_set::Wanted;
 use crate::next_motion::calibration::{calibrate, without_held_out};
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::nominal::input_error::InputError;
 use crate::program::layout::Limits;
 use crate::program::program::Program;
@@ -29,14 +30,17 @@ pub struct Fitted {
     pub problem: Problem,
     /// How the model was fitted.
     pub record: FitRecord,
+    /// The motions that were left out of the fit and of the sets of the linear model, if the fit
+    /// was taken.
+    pub(crate) left_out: Option<LeftOutMotions>,
 }
 
 /// Finds the parameters of the nominal model for which its sets cost least.
 ///
 /// Motions that calibrate the sets are held out from this fit too.
 ///
-/// Without a given pull the problem keeps the identified model if that carries over better to
-/// motions that are left out.
+/// Without a given pull, groups without which fits carry over better to motions that are left out
+/// are dropped, and the problem keeps the identified model if that carries over better still.
 ///
 /// The answer is a model, not a claim: [`conform`](crate::conform) finds and proves its sets as it
 /// does for any other. A model that is not linear is given the parameters that suit the linear
@@ -85,9 +89,9 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     progress.go_on()?;
     if settings.pull.is_none() && !choice.carries_over() {
         let (record, setup) = (not_taken(&fit, choice, steering)?, problem.setup().clone());
-        return Ok(Fitted { problem: problem.with_setup(setup), record });
+        return Ok(Fitted { problem: problem.with_setup(setup), record, left_out: None });
     }
-    let found = search(&fit, &settings.distinct_groups(), choice.pull)?;
+    let found = search(&fit, &choice)?;
     progress.finished(&format!("the fit took {} steps", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {
         let own = Parameters::new(problem.setup(), &settings.groups, &speeds);
@@ -102,12 +106,12 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
     }
     let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
-    let mut record =
-        record(&fit, &settings.distinct_groups(), choice, Some(&found.numbers), costs)?;
+    let left_out = Some(LeftOutMotions::from(&choice));
+    let mut record = record(&fit, choice, Some(&found.numbers), costs)?;
     record.identified_calibrated_cost = calibrated_cost(problem);
     // The numbers go to the model that was asked for, with all motions.
     let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
-    Ok(Fitted { problem, record })
+    Ok(Fitted { problem, record, left_out })
 }
 
 /// Returns the highest recorded speed of each joint, rad/s; none for a linear model whose friction
@@ -120,20 +124,25 @@ fn speeds_of_friction(problem: &Problem, steering: &Problem, groups: &[Group]) -
     (0..joints).map(|joint| steering.highest_speed(joint)).collect()
 }
 
-/// Searches with `pull` in parts of the identified model's cost.
+/// Searches with the pull and the groups that were chosen; the pull is in parts of the identified
+/// model's cost.
 ///
 /// The cost has more than one local optimum. One search moves all groups from the beginning, and
 /// one for each group first the others; the best answer counts.
-fn search(fit: &FitTask, groups: &[Group], pull: f64) -> Result<FoundNumbers> {
+fn search(fit: &FitTask, choice: &PullChoice) -> Result<FoundNumbers> {
+    let groups = choice.groups(fit.parameters);
     let (start, tracks) = (fit.parameters.start(), fit.tracks(None));
-    let pull = pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
-    let wanted = |held, effort| Wanted { left_out: None, pull, held, effort };
+    let pull = choice.pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
+    let wanted = |more: &[Group], effort| {
+        let held = [&choice.dropped[..], more].concat();
+        Wanted { left_out: None, pull, held, effort }
+    };
     let of_held = |held: Option<Group>| {
         let first = match held {
-            Some(group) => fit.search(&wanted(vec![group], SearchEffort::START), &start)?.numbers,
+            Some(group) => fit.search(&wanted(&[group], SearchEffort::START), &start)?.numbers,
             None => start.clone(),
         };
-        fit.search(&wanted(Vec::new(), SearchEffort::START), &first)
+        fit.search(&wanted(&[], SearchEffort::START), &first)
     };
     let held = groups.iter().map(|group| Some(*group)).filter(|_| groups.len() > 1);
     let starts: Vec<Option<Group>> = std::iter::once(None).chain(held).collect();
@@ -144,7 +153,7 @@ fn search(fit: &FitTask, groups: &[Group], pull: f64) -> Result<FoundNumbers> {
             best = other;
         }
     }
-    let found = fit.search(&wanted(Vec::new(), SearchEffort::WHOLE), &best.numbers)?;
+    let found = fit.search(&wanted(&[], SearchEffort::WHOLE), &best.numbers)?;
     Ok(FoundNumbers { steps: best.steps + found.steps, ..found })
 }
 
@@ -197,7 +206,10 @@ fn smallest_cost(problem: &Problem) -> Result<f64> {
 fn calibrated_cost(problem: &Problem) -> Option<f64> {
     let is_calibrated = !problem.settings().calibrate.is_empty();
     let is_linear = problem.dynamics().linear_system().is_some();
-    let found = (is_calibrated && is_linear).then(|| calibrate(problem, &Silent, None));
+    let found = (is_calibrated && is_linear).then(|| {
+        let known = Some(LeftOutMotions::default());
+        calibrate(problem, known, (&Silent, None))
+    });
     found?.ok().map(|(found, _)| found.cost)
 }
 
@@ -212,24 +224,24 @@ fn linear_setup(setup: &Setup) -> Result<Setup> {
 
 /// Returns the record of a fit that was not taken.
 fn not_taken(fit: &FitTask, choice: PullChoice, steering: &Problem) -> Result<FitRecord> {
-    record(fit, &[], choice, None, [smallest_cost(steering)?; 2])
+    record(fit, choice, None, [smallest_cost(steering)?; 2])
 }
 
-/// Returns the record of a fit of `groups` that found numbers, or that was not taken.
+/// Returns the record of a fit that found numbers, or that was not taken.
 fn record(
     fit: &FitTask,
-    groups: &[Group],
     choice: PullChoice,
     found: Option<&[f64]>,
     [identified_cost, cost]: [f64; 2],
 ) -> Result<FitRecord> {
     let setup = fit.parameters.setup();
+    let groups = found.map_or_else(Vec::new, |_| choice.groups(fit.parameters));
     let numbers = found.map_or_else(|| vec![0.0; fit.parameters.len()], <[f64]>::to_vec);
     let cost_without = |group: &Group| {
         let wanted = Wanted {
             left_out: None,
             pull: choice.pull * identified_cost,
-            held: vec![*group],
+            held: [&choice.dropped[..], &[*group]].concat(),
             effort: SearchEffort::QUICK,
         };
         let (start, without) = (fit.parameters.start(), fit.without(*group, &numbers));
@@ -254,6 +266,7 @@ fn record(
         identified_cost,
         cost,
         groups: groups.par_iter().map(cost_without).collect::<Result<_>>()?,
+        dropped: choice.dropped,
         taken: found.is_some(),
         leave_one_out: choice.left_out,
         identified_left_out: choice.identified,
@@ -268,7 +281,7 @@ fn record(
 
 impl FitTask<'_> {
     /// Returns `numbers`, in which a group has the numbers that a fit starts from.
-    fn without(&self, group: Group, numbers: &[f64]) -> Vec<f64> {
+    pub(crate) fn without(&self, group: Group, numbers: &[f64]) -> Vec<f64> {
         let start = self.parameters.start();
         let parameters = self.parameters.list.iter().zip(numbers.iter().zip(&start));
         let kept = parameters.map(

@@ -86,9 +86,4 @@ impl FitSettings {
         }
         Ok(())
     }
-
-    /// Returns each group once, also where it was named twice.
-    pub(crate) fn distinct_groups(&self) -> Vec<Group> {
-        Group::ALL.into_iter().filter(|group| self.groups.contains(group)).collect()
-    }
 }

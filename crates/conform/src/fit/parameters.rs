@@ -127,6 +127,12 @@ impl<'a> Parameters<'a> {
         self.setup
     }
 
+    /// Returns the groups that have parameters.
+    pub(crate) fn groups(&self) -> Vec<Group> {
+        let has = |group: &Group| self.list.iter().any(|own| own.quantity.group() == *group);
+        Group::ALL.into_iter().filter(has).collect()
+    }
+
     /// Returns the number of parameters.
     pub(crate) fn len(&self) -> usize {
         self.list.len()

@@ -19,6 +19,10 @@ pub struct FitRecord {
     /// What each group is worth. These costs, and the costs without each motion, are approximate
     /// where the times between samples differ.
     pub groups: Vec<GroupCost>,
+    /// Groups that were not fitted, because fits without them carry over better to motions that are
+    /// left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub dropped: Vec<Group>,
     /// Whether the model has the fitted values. Without a given pull it keeps the identified ones
     /// where these carry over better to motions that are left out.
     #[serde(default = "taken")]

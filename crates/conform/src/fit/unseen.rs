@@ -4,6 +4,7 @@ use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
 use crate::fit::evaluation::FitTask;
 use crate::fit::record::UnseenMotion;
+use crate::next_motion::allowance::Missing;
 
 /// A motion that is left out of a fit and of its sets.
 pub(crate) struct Unseen<'a> {
@@ -14,19 +15,21 @@ pub(crate) struct Unseen<'a> {
 }
 
 impl Unseen<'_> {
-    /// Finds the sets of the other motions for `numbers`, and compares the motion with them.
+    /// Finds the sets of the other motions for `numbers`, and compares the motion with them. Also
+    /// returns the rows of the motion that lie beyond these sets; `None` if a nominal motion runs
+    /// away.
     ///
     /// # Errors
     ///
     /// As [`FitTask::model`], but for a nominal motion that runs away; as [`Program::solve`].
-    pub(crate) fn compare(&self, numbers: &[f64]) -> Result<UnseenMotion> {
+    pub(crate) fn compare(&self, numbers: &[f64]) -> Result<(UnseenMotion, Option<Missing>)> {
         let Self { whole, motion } = self;
         let name = whole.data.motions[*motion].clone();
         let others = whole.tracks(Some(*motion));
         let all = whole.tracks(None);
         let own: Vec<usize> = all.iter().copied().filter(|t| !others.contains(t)).collect();
         let model = match whole.model(numbers, &all, None) {
-            Err(Error::RunsAway { .. }) => return Ok(UnseenMotion::runs_away(name)),
+            Err(Error::RunsAway { .. }) => return Ok((UnseenMotion::runs_away(name), None)),
             model => model?,
         };
         let mut rows = Vec::new();
@@ -42,7 +45,9 @@ impl Unseen<'_> {
         };
         let [outside, rows] =
             own.iter().map(of_track).fold([0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
-        Ok(UnseenMotion {
+        let mut missing = Missing::new();
+        program.missing(&smallest.sets, &mut missing);
+        let unseen = UnseenMotion {
             motion: name,
             cost: Some(cost),
             cost_without: Some(smallest.cost),
@@ -50,6 +55,7 @@ impl Unseen<'_> {
             grown_cost: growth.map(|growth| program.cost(&smallest.sets.grown(growth, input_only))),
             outside: Some(outside),
             rows,
-        })
+        };
+        Ok((unseen, Some(missing)))
     }
 }

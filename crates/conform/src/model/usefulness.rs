@@ -3,6 +3,7 @@
 use reachtube_recordings::{Preparation, Torque};
 
 use crate::model::file::Model;
+use crate::next_motion::without_motion::LeftOut;
 
 impl Model {
     /// Returns whether the sets were proved to enclose every recording and say something about the
@@ -17,6 +18,11 @@ impl Model {
     #[must_use]
     pub fn is_vacuous(&self) -> bool {
         self.verified && self.usefulness.as_ref().is_some_and(|said| !said.vacuous.is_empty())
+    }
+
+    /// Returns the model with how motions lie to a model without them.
+    pub(crate) fn with_left_out(self, left_out: Vec<LeftOut>) -> Self {
+        Self { left_out, ..self }.sealed()
     }
 
     /// Returns the model with what was done to logs before its sets were found. That is no longer a

@@ -27,21 +27,41 @@ impl Program<'_> {
     }
 }
 
-/// Returns the radii that have to be added to X0 and U, 3n, so that they cover all rows that are
-/// missing; `None` if none do. Where motions differ, U differs like the input that the robot does
-/// not explain, n; X0 grows in proportion to its radii, unless the noise of the sensors limits it.
-pub(crate) fn allowance_for(
-    problem: &Problem,
-    sets: &UncertaintySets,
-    input_error: &[f64],
-    missing: &Missing,
-) -> Option<Vec<f64>> {
-    let starts = match problem.settings().nominal {
-        NominalStart::Own => vec![0.0; sets.initial_set.dimension()],
-        NominalStart::Mean => sets.initial_set.radius.clone(),
-    };
-    let shape = [&starts[..], input_error].concat();
-    let needed = |(excess, gains): &(f64, Vec<f64>)| excess / dot(gains, &shape);
+/// What motions that are left out ask of wider sets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AllowanceNeeded {
+    /// Radii that may be added to X0 and U, 3n. The radii of U are in proportion to the error
+    /// of the input, and the radii of X0 to X0; these are 0 where the noise of the sensors limits
+    /// X0.
+    pub shape: Vec<f64>,
+    /// The factor of `shape`, for each motion, with which the sets of the others enclose it: 0
+    /// where they do without. `None` if no factor suffices.
+    pub factors: Vec<Option<f64>>,
+}
+
+impl AllowanceNeeded {
+    /// Compares what motions miss with the input that the robot does not explain, n: there motions
+    /// differ.
+    pub(crate) fn new(
+        problem: &Problem,
+        sets: &UncertaintySets,
+        input_error: &[f64],
+        missing: &[Missing],
+    ) -> Self {
+        let starts = match problem.settings().nominal {
+            NominalStart::Own => vec![0.0; sets.initial_set.dimension()],
+            NominalStart::Mean => sets.initial_set.radius.clone(),
+        };
+        let shape = [&starts[..], input_error].concat();
+        let factors = missing.iter().map(|missing| factor_for(missing, &shape)).collect();
+        Self { shape, factors }
+    }
+}
+
+/// Returns the factor of `shape`, 3n, with which wider sets cover all rows that are missing; `None`
+/// if none suffices.
+pub(crate) fn factor_for(missing: &Missing, shape: &[f64]) -> Option<f64> {
+    let needed = |(excess, gains): &(f64, Vec<f64>)| excess / dot(gains, shape);
     let factor = missing.values().map(needed).fold(0.0, f64::max);
-    factor.is_finite().then(|| shape.iter().map(|radius| factor * radius).collect())
+    factor.is_finite().then_some(factor)
 }

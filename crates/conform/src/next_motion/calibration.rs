@@ -5,15 +5,15 @@ use reachtube_recordings::matching;
 use serde::{Deserialize, Serialize};
 
 use crate::advice::Advice;
-use crate::claim::claim::{Claim, Rows};
 use crate::claim::look::Look;
-use crate::claim::notion::plant;
+use crate::claim::notion::{claim, plant};
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::outer_gauge::{OuterGauge, STEP, outer_gauge};
+use crate::next_motion::point_gauge::point_gauge;
 use crate::program::program::{Program, TIGHT};
 use crate::progress::Progress;
 use crate::search::found::{Deciding, Found};
@@ -80,13 +80,13 @@ fn is_one(count: &usize) -> bool {
 /// for; as [`conform`](crate::conform).
 pub(crate) fn calibrate(
     problem: &Problem,
-    progress: &dyn Progress,
-    resume: Option<&Path>,
+    left_out: Option<LeftOutMotions>,
+    how: (&dyn Progress, Option<&Path>),
 ) -> Result<(Found, Calibration)> {
     let motions = Motions::new(problem.recordings());
     let held_out = held_out(problem, &motions)?;
     let fit = problem.with_suites(|suite| !held_out.contains(motions.of_suite(suite)));
-    let first = smallest_sets(&fit, &Rows, progress, resume)?;
+    let first = smallest_sets(&fit, &*claim(&fit, None)?, left_out, how)?;
     let Found { tube: Tube { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
     let linear =
@@ -97,7 +97,11 @@ pub(crate) fn calibrate(
             .map(|s| motions.of_suite(s) == *motion)
             .collect();
         let gauge = match &linear {
-            Some(program) => linear_gauge(problem, program, &fitted, &suites, input_only),
+            Some(program) => {
+                let rows = linear_gauge(problem, program, &fitted, &suites, input_only)?;
+                let own = problem.with_suites(|suite| suites[suite]);
+                rows.map_or(Ok(None), |rows| point_gauge(&own, rows, &grown))
+            }
             None => match outer_gauge(problem, &suites, Effort::Whole, (1.0, 1), &grown)? {
                 OuterGauge::Factor(factor) => Ok(Some(factor)),
                 OuterGauge::None => Ok(None),
@@ -139,8 +143,11 @@ pub(crate) fn without_held_out(problem: &Problem) -> Result<Option<Problem>> {
 
 /// Returns the motions that the settings hold out, or why that cannot be.
 fn held_out<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
-    if problem.settings().notion.asks_points() {
-        let problem = "sets are calibrated for the notion hull only; use that notion";
+    let notion = problem.settings().notion;
+    let is_linear = problem.dynamics().linear_system().is_some();
+    if notion.asks_motions() || notion.asks_points() && !is_linear {
+        let problem = "sets are calibrated for the notions hull, phase-plane and exact of a linear \
+                       model, and for hull of any other; use the notion hull";
         return Err(Error::Calibration(Advice::from(problem).with("notion", "hull")));
     }
     let all = motions.distinct();
@@ -204,9 +211,10 @@ pub(crate) fn not_smallest(
     scale: Option<f64>,
 ) -> Result<Found> {
     let plant = &*plant(problem)?;
+    let claim = &*claim(problem, None)?;
     let tube = match scale {
-        Some(scale) => prove((problem, plant), &Rows, sets, scale)?,
-        None => Rows.judge(plant, sets, &Look::proof())?,
+        Some(scale) => prove((problem, plant), claim, sets, scale)?,
+        None => claim.judge(plant, sets, &Look::proof())?,
     };
     let Costs { cost, paper, volume } = plant.costs(&tube)?;
     Ok(Found {

@@ -23,13 +23,13 @@ struct Without<'a> {
 }
 
 /// Motions that were left out, beside the sets of the others.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(crate) struct LeftOutMotions {
     /// Each motion.
     pub each: Vec<LeftOut>,
-    /// The rows of motions that lie beyond the sets of the others. `None` for a single motion, for
-    /// a program that could not be solved, and for a model that is not linear.
-    pub missing: Option<Missing>,
+    /// The rows of each motion that lie beyond the sets of the others. `None` for a single motion,
+    /// for a program that could not be solved, and for a model that is not linear.
+    pub missing: Option<Vec<Missing>>,
 }
 
 /// Leaves each motion out of the program that gave the smallest sets, one after the other, and
@@ -97,26 +97,16 @@ pub(crate) fn leave_each_out(
     let (each, missing): (Vec<LeftOut>, Vec<Option<Missing>>) = left.into_iter().unzip();
     let is_linear = problem.dynamics().linear_system().is_some();
     let missing: Option<Vec<Missing>> = missing.into_iter().collect();
-    let missing = missing.filter(|_| is_linear).map(merged);
-    Ok(LeftOutMotions { each, missing })
+    Ok(LeftOutMotions { each, missing: missing.filter(|_| is_linear) })
 }
 
-/// Returns the rows that any comparison misses, each by the most that it misses.
-fn merged(all: Vec<Missing>) -> Missing {
-    let mut merged = Missing::new();
-    for (row, (excess, gains)) in all.into_iter().flatten() {
-        let own = merged.entry(row).or_insert((0.0, gains));
-        own.0 = own.0.max(excess);
-    }
-    merged
-}
-
-/// Finds the sets of the other motions of a linear model, and compares `motion` with them.
+/// Finds the sets of the other motions of a linear model, and compares `motion` with them. Returns
+/// its rows that lie beyond them too; `None` if the program could not be solved.
 ///
 /// # Errors
 ///
 /// As [`Problem::run`]; [`Error::NotLinear`](crate::Error::NotLinear).
-pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<LeftOut> {
+pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<(LeftOut, Option<Missing>)> {
     let motions = Motions::new(problem.recordings());
     let suites = 0..problem.recordings().suites.len();
     let suites = suites.map(|suite| motions.of_suite(suite) == motion).collect();
@@ -126,7 +116,7 @@ pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<LeftOut> {
     let (own, others) = (without.own(&program)?, without.others(&program)?);
     let (rows, [cost, gauge]) = (without.row_count()?, [None; 2]);
     let unknown = LeftOut { motion: motion.into(), cost, rows, outside: None, gauge };
-    Ok(without.compare(&others, &[], &own, unknown)?.0)
+    without.compare(&others, &[], &own, unknown)
 }
 
 impl Without<'_> {

@@ -10,11 +10,13 @@ pub(crate) mod growth;
 pub(crate) mod left_out;
 pub(crate) mod motions;
 mod outer_gauge;
+pub(crate) mod point_gauge;
 pub(crate) mod rates;
 pub(crate) mod trends;
 pub(crate) mod trust;
 pub(crate) mod without_motion;
 
+pub use allowance::AllowanceNeeded;
 pub use any_run::AnyRun;
 pub use calibration::{Calibration, Gauge};
 pub use deciding_runs::{DecidingRun, DecidingRuns};

@@ -12,7 +12,7 @@ pub struct LeftOut {
     /// The cost of the smallest sets for the others, over the same samples as the cost of all; of a
     /// model that is not linear, the cost of the linearised sets. `None` if it was not computed.
     pub cost: Option<f64>,
-    /// Number of rows of the motion.
+    /// Number of rows of the motion, or of its points where the notion asks them.
     pub rows: usize,
     /// How many of them leave these sets.
     pub outside: Option<usize>,

@@ -9,7 +9,7 @@ use crate::data::settings::{Equations, Method};
 use crate::error::Result;
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::plausibility::cause::{Cause, Reading};
-use crate::plausibility::evidence::{Evidence, Hypothesis};
+use crate::plausibility::evidence::{Evidence, Hypothesis, Misses, part};
 
 /// A hypothesis is named when it lessens the unexplained part of the input by this much ...
 const LEAST_GAIN: f64 = 0.1;
@@ -49,13 +49,17 @@ pub(super) fn likely_cause(
     let evidence = Evidence::new(problem)?;
     let stated = stated(problem);
     let scaled = calibration.filter(|found| found.factor >= LARGE_FACTOR).map(scaled_by);
-    let Some(rest) = evidence.unexplained(&stated) else { return Ok(scaled) };
-    let tried = hypotheses(&stated);
-    let scored = tried.into_iter().filter_map(|tried| Some((evidence.unexplained(&tried)?, tried)));
-    let best = scored.min_by(|a, b| a.0.total_cmp(&b.0));
-    let likely =
-        best.filter(|(least, _)| rest - least > LEAST_GAIN && *least < LARGEST_REST * rest);
-    if let Some((unexplained, Hypothesis { reading, .. })) = likely {
+    let as_stated = evidence.misses(&stated);
+    let Some(rest) = part(&as_stated) else { return Ok(scaled) };
+    let tried: Vec<Tried> = hypotheses(&stated)
+        .into_iter()
+        .map(|tried| Tried { misses: evidence.misses(&tried), reading: tried.reading })
+        .collect();
+    let likely = best(&tried, |_| true).filter(|(least, _)| gains(rest, *least));
+    if let Some((unexplained, Tried { reading, .. })) =
+        likely.filter(|_| carries_over(&as_stated, &tried))
+    {
+        let reading = reading.clone();
         return Ok(Some(Cause::Reading { reading, unexplained, as_stated: rest }));
     }
     if scaled.is_some() {
@@ -63,6 +67,43 @@ pub(super) fn likely_cause(
     }
     let lost = lost_by_model(problem, &evidence, &stated, rest);
     Ok(lost.or(Some(horizon_or_parameters(problem, evidence.longest(), rest))))
+}
+
+/// A reading, and what it misses in each run.
+struct Tried {
+    reading: Reading,
+    misses: Vec<Misses>,
+}
+
+/// Returns whether a reading that leaves `least` unexplained is named where `rest` is unexplained
+/// as stated.
+fn gains(rest: f64, least: f64) -> bool {
+    rest - least > LEAST_GAIN && least < LARGEST_REST * rest
+}
+
+/// Returns the reading that leaves least unexplained in some runs, with that part.
+fn best(tried: &[Tried], takes: impl Fn(usize) -> bool) -> Option<(f64, &Tried)> {
+    let own = |tried: &&Tried| {
+        let runs = tried.misses.iter().enumerate().filter(|(run, _)| takes(*run));
+        part(runs.map(|(_, misses)| misses))
+    };
+    let scored = tried.iter().filter_map(|tried| Some((own(&tried)?, tried)));
+    scored.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Returns whether readings lessen what is unexplained in runs that are left out too: for each run,
+/// by the reading that is best for the other runs. A single run has none to be left out.
+fn carries_over(as_stated: &[Misses], tried: &[Tried]) -> bool {
+    if as_stated.len() < 2 {
+        return true;
+    }
+    let left_out = |left_out: usize| {
+        let (_, best) = best(tried, |run| run != left_out)?;
+        Some(&best.misses[left_out])
+    };
+    let misses: Option<Vec<&Misses>> = (0..as_stated.len()).map(left_out).collect();
+    let least = misses.and_then(part);
+    part(as_stated).zip(least).is_some_and(|(rest, least)| gains(rest, least))
 }
 
 /// Returns the cause where the recordings mean what was stated, and the robot leaves `unexplained`

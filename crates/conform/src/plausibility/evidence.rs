@@ -105,19 +105,24 @@ impl<'a> Evidence<'a> {
     /// unrelated ones and 2 for opposite ones. `None` where the runs are too short for it, or too
     /// short for the lag.
     pub(super) fn unexplained(&self, hypothesis: &Hypothesis) -> Option<f64> {
+        part(&self.misses(hypothesis))
+    }
+
+    /// Returns, for each run and joint, Σ (u - u_m)² and Σ (u² + u_m²) under a hypothesis.
+    pub(super) fn misses(&self, hypothesis: &Hypothesis) -> Vec<Misses> {
         let Hypothesis { time, angle, inertia_at, torque, .. } = hypothesis;
         let is_shared =
             *time == self.needed.time && *angle == self.needed.angle && inertia_at.is_none();
         let own = (!is_shared)
             .then(|| Needed::new(self.robot, &self.runs, (*time, *angle), inertia_at.as_deref()));
         let needed = own.as_ref().unwrap_or(&self.needed);
-        let mut sums = vec![[0.0; 2]; self.robot.joint_count()];
-        for (run, needed) in self.runs.iter().zip(&needed.runs) {
+        let of_run = |(run, needed): (&Run, &Vec<[Vec<f64>; 3]>)| {
+            let mut sums = vec![[0.0; 2]; self.robot.joint_count()];
             let samples = Samples::new(run, *time);
             let lag = (hypothesis.lag / samples.step).round() as usize;
             // A lag that leaves little of a run would be judged by other samples than no lag.
             if lag > run.len() / 4 {
-                continue;
+                return sums;
             }
             let in_time = samples.places(run).take_while(|k| k + samples.half + lag < run.len());
             for (k, [needed, viscous, motors]) in in_time.zip(needed) {
@@ -136,10 +141,9 @@ impl<'a> Evidence<'a> {
                     sum[1] += a * a + b * b;
                 }
             }
-        }
-        let moving = sums.iter().filter(|[_, size]| *size > 0.0);
-        let parts: Vec<f64> = moving.map(|[missed, size]| missed / size).collect();
-        (!parts.is_empty()).then(|| parts.iter().sum::<f64>() / parts.len() as f64)
+            sums
+        };
+        self.runs.iter().zip(&needed.runs).map(of_run).collect()
     }
 
     /// Returns the motor torques `torques`, the means around sample `k`, less gravity and softened
@@ -184,6 +188,25 @@ impl<'a> Evidence<'a> {
             }
         }
     }
+}
+
+/// What a run's input and the one that the robot needs differ by, and their size, for each joint:
+/// Σ (u - u_m)² and Σ (u² + u_m²).
+pub(super) type Misses = Vec<[f64; 2]>;
+
+/// Returns the part of the input that is not explained in some runs, as
+/// [`Evidence::unexplained`].
+pub(super) fn part<'a>(runs: impl IntoIterator<Item = &'a Misses>) -> Option<f64> {
+    let mut sums: Misses = Vec::new();
+    for run in runs {
+        sums.resize(run.len(), [0.0; 2]);
+        sums.iter_mut().zip(run).for_each(|(sum, own)| {
+            *sum = [sum[0] + own[0], sum[1] + own[1]];
+        });
+    }
+    let moving = sums.iter().filter(|[_, size]| *size > 0.0);
+    let parts: Vec<f64> = moving.map(|[missed, size]| missed / size).collect();
+    (!parts.is_empty()).then(|| parts.iter().sum::<f64>() / parts.len() as f64)
 }
 
 /// The samples of a run that are looked at.

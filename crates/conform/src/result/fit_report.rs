@@ -30,6 +30,11 @@ pub(super) fn fit(model: &Model) -> Section {
     let groups = record.groups.iter();
     let groups = groups.map(|group| format!("{} {}", group.group.name(), cost(group.cost_without)));
     section.fact("cost without a group, the others fitted again", list(groups.collect()));
+    if !record.dropped.is_empty() {
+        let dropped = record.dropped.iter().map(|group| group.name().to_string()).collect();
+        section
+            .fact("groups that were not fitted, since the fit carries over better", list(dropped));
+    }
     let of = |left: &UnseenMotion| format!("{} {}", left.motion, cost(left.cost));
     let each = list(record.leave_one_out.iter().map(of).collect());
     section.fact(

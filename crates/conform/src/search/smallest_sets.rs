@@ -18,9 +18,9 @@ use crate::search::prove::prove;
 use crate::search::search::{Ended, search};
 use crate::tube::plant::{Costs, Plant};
 
-/// Finds the smallest sets for all recordings of a problem, and those without each motion. What a
-/// search for the sets of a model that is not linear has finished is kept in the file `resume` and
-/// removed at the end.
+/// Finds the smallest sets for all recordings of a problem, and those without each motion, unless
+/// the motions were left out before (`left_out`). What a search for the sets of a model that is not
+/// linear has finished is kept in the file `resume` and removed at the end.
 ///
 /// # Errors
 ///
@@ -28,8 +28,8 @@ use crate::tube::plant::{Costs, Plant};
 pub(crate) fn smallest_sets(
     problem: &Problem,
     claim: &dyn Claim,
-    progress: &dyn Progress,
-    resume: Option<&Path>,
+    left_out: Option<LeftOutMotions>,
+    (progress, resume): (&dyn Progress, Option<&Path>),
 ) -> Result<Found> {
     let plant = &*plant(problem)?;
     let journal = Journal::new(resume.filter(|_| !plant.is_exact()), problem);
@@ -38,7 +38,10 @@ pub(crate) fn smallest_sets(
         _ => {
             let ended = search((problem, plant), claim, &journal, progress)?;
             let (found, program, rows) = finish((problem, plant), claim, ended, progress)?;
-            let left_out = leave_each_out(problem, &program, &found.tube.sets, rows, progress)?;
+            let left_out = match left_out {
+                Some(known) => known,
+                None => leave_each_out(problem, &program, &found.tube.sets, rows, progress)?,
+            };
             Found { left_out, ..found }
         }
     };

@@ -96,7 +96,7 @@ fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
     for disturbance in [Disturbance::Sample, Disturbance::Constant, Disturbance::Measurable] {
         let problem = problem(truth, 3, |settings| settings.disturbance = disturbance);
         let before = conform_all(&problem);
-        let Fitted { problem: better, record } =
+        let Fitted { problem: better, record, .. } =
             fitted(&problem, &[Group::Inertia, Group::Viscous], Some(0.001));
         let after = conform_all(&better);
         assert!(after.verdict.conformant && after.cost < 0.2 * before.cost, "{}", after.cost);
@@ -115,7 +115,8 @@ fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
 fn the_costs_are_those_of_conform_where_samples_are_uneven() {
     let problem = problem(Truth { elbow: 1.6, uneven: true, ..PLAIN }, 2, |_| {});
     let before = conform_all(&problem);
-    let Fitted { problem: better, record } = fitted(&problem, &[Group::Viscous; 2], Some(0.001));
+    let Fitted { problem: better, record, .. } =
+        fitted(&problem, &[Group::Viscous; 2], Some(0.001));
     let after = conform_all(&better);
     let same = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
     assert!(
@@ -140,7 +141,7 @@ fn standard_errors_of_the_description_stand_beside_the_values() {
     let robot = Robot::from_description(&description).unwrap();
     let setup = Setup::new(robot, problem.settings().clone()).unwrap();
     let groups = [Group::Inertia, Group::Viscous];
-    let Fitted { problem, record } = fitted(&problem.with_setup(setup), &groups, Some(0.02));
+    let Fitted { problem, record, .. } = fitted(&problem.with_setup(setup), &groups, Some(0.02));
     for parameter in &record.parameters {
         let is_viscous = parameter.group == Group::Viscous;
         assert_eq!(parameter.standard_error, is_viscous.then_some(0.1), "{parameter:?}");
@@ -160,7 +161,7 @@ fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
     let truth = Truth { elbow: 1.2, warm_up: -0.25, ..PLAIN };
     let problem = problem(truth, 3, |_| {});
     let without = fitted(&problem, &[Group::Viscous], Some(0.001));
-    let Fitted { problem: better, record } =
+    let Fitted { problem: better, record, .. } =
         fitted(&problem, &[Group::Viscous, Group::WarmUp], Some(0.001));
     assert!(record.cost < 0.4 * without.record.cost, "{record:?}");
     let elbow = record.parameters.iter().find(|p| p.joint == 2 && p.group == Group::WarmUp);
@@ -195,7 +196,7 @@ fn coulomb_friction_is_taken_off_along_the_nominal_motion() {
     };
     let setup = Setup::new(robot, problem.settings().clone()).unwrap();
     let problem = problem.with_setup(setup);
-    let Fitted { problem: better, record } = fitted(&problem, &[Group::Coulomb], Some(1e-4));
+    let Fitted { problem: better, record, .. } = fitted(&problem, &[Group::Coulomb], Some(1e-4));
     // The recorded input is free of 0.2 N m already, and 0.3 N m more are there.
     let [only] = &record.parameters[..] else { panic!("{record:?}") };
     assert!((only.fitted - 0.5).abs() < 0.02, "{only:?}");
@@ -213,7 +214,7 @@ fn a_payload_is_found_on_links_that_are_described_by_their_centre_of_mass() {
     };
     let setup = Setup::new(robot, problem.settings().clone()).unwrap();
     let problem = problem.with_setup(setup);
-    let Fitted { problem: better, record } = fitted(&problem, &[Group::Payload], Some(1e-4));
+    let Fitted { problem: better, record, .. } = fitted(&problem, &[Group::Payload], Some(1e-4));
     let [only] = &record.parameters[..] else { panic!("{record:?}") };
     assert!((only.fitted - 0.2).abs() < 0.02, "{only:?}");
     assert!(conform_all(&better).verdict.conformant);
@@ -279,7 +280,7 @@ fn of_arms(elbows: &[f64], calibrate: &[&str]) -> Problem {
 /// The warning that a fit to motions of these arms suits them only, and the fit's record.
 fn overfitted(elbows: &[f64], calibrate: &[&str]) -> (Option<String>, FitRecord) {
     let problem = of_arms(elbows, calibrate);
-    let Fitted { problem, record } = fitted(&problem, &[Group::Viscous], Some(0.001));
+    let Fitted { problem, record, .. } = fitted(&problem, &[Group::Viscous], Some(0.001));
     let model = Model::new(&problem, &conform_all(&problem)).with_fit(record.clone());
     let of = model.warnings.into_iter().filter(|found| found.kind == WarningKind::Overfitted);
     (of.map(|found| found.text).next(), record)
@@ -302,7 +303,7 @@ fn a_fit_that_suits_its_own_motions_only_is_a_warning() {
 fn motions_are_left_out_of_the_fit_as_a_calibration_leaves_them_out() {
     let elbows = [1.6, 1.5, 1.8];
     let (all, groups) = (of_arms(&elbows, &[]), [Group::Viscous]);
-    let Fitted { problem, record } = fitted(&all, &groups, Some(0.001));
+    let Fitted { problem, record, .. } = fitted(&all, &groups, Some(0.001));
     let model = Model::new(&problem, &conform_all(&problem)).with_fit(record.clone());
     for (motion, name) in ["motion0", "motion1", "motion2"].into_iter().enumerate() {
         let gauge = |problem: &Problem| conform_all(problem).calibration.unwrap().gauges[0].gauge;
@@ -312,23 +313,25 @@ fn motions_are_left_out_of_the_fit_as_a_calibration_leaves_them_out() {
         let unseen = &record.leave_one_out[motion];
         let again = gauge(&fitted(&held_out, &groups, Some(0.001)).problem);
         assert!((unseen.growth.unwrap() / again - 1.0).abs() < 0.05, "{unseen:?}, {again}");
-        let carried = carry_over(&all, name, None, &Silent).unwrap();
+        let one = [1.0; 6];
+        let (carried, factor) = carry_over(&all, name, None, &one, &Silent).unwrap();
+        assert_eq!(factor > Some(0.0), carried.outside > Some(0), "{factor:?}, {carried:?}");
         assert!((carried.gauge.unwrap() / identified - 1.0).abs() < 1e-6, "{carried:?}");
         let settings = FitSettings { groups: groups.to_vec(), pull: Some(0.001) };
-        let carried = carry_over(&all, name, Some(&settings), &Silent).unwrap();
+        let (carried, _) = carry_over(&all, name, Some(&settings), &one, &Silent).unwrap();
         assert!((carried.gauge.unwrap() / again - 1.0).abs() < 1e-6, "{carried:?}, {again}");
         // The model reports this growth, not the growth for a fit that has seen the motion.
         assert_eq!(model.left_out[motion].gauge, unseen.growth);
         assert_eq!(model.left_out[motion].outside, unseen.outside);
     }
-    let unknown = carry_over(&all, "motion7", None, &Silent).unwrap_err().to_string();
+    let unknown = carry_over(&all, "motion7", None, &[1.0; 6], &Silent).unwrap_err().to_string();
     assert!(unknown.contains("motion0, motion1, motion2"), "{unknown}");
 }
 
 #[test]
 fn a_fit_that_carries_over_worse_is_not_taken() {
     let problem = of_arms(&[1.6, 0.6], &[]);
-    let Fitted { problem: kept, record } = fitted(&problem, &[Group::Viscous], None);
+    let Fitted { problem: kept, record, .. } = fitted(&problem, &[Group::Viscous], None);
     assert!(!record.taken && record.cost == record.identified_cost, "{record:?}");
     assert_eq!(kept.robot().description(), problem.robot().description());
     let model = Model::new(&kept, &conform_all(&kept)).with_fit(record);
@@ -378,7 +381,7 @@ fn recordings_that_were_folded_are_fitted_to_the_last_bit() {
     for setup in [with(&|_| {}), own, calibrated] {
         let once = Problem::read(setup.clone(), Box::new(runs.clone()), &[], Keep::Needed, &Silent);
         let [by_fold, once] = [folded(&setup, &runs), once.unwrap()].map(|problem| {
-            let Fitted { problem, record } = fitted(&problem, &groups, Some(0.001));
+            let Fitted { problem, record, .. } = fitted(&problem, &groups, Some(0.001));
             let found = conform_all(&problem);
             assert!(found.verdict.conformant);
             Model::new(&problem, &found).with_fit(record).to_json()

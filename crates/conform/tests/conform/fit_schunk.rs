@@ -37,7 +37,7 @@ fn the_sets_shrink(of: &[(Disturbance, &[Group], f64, f64)]) {
     for &(disturbance, groups, pull, most) in of {
         let settings = Settings { disturbance, ..Settings::new(Torque::Compensated, 6) };
         let problem = read(&Robot::lwa4p(), &folder, &["A", "B", "D", "E"], &settings);
-        let Fitted { problem: better, record } =
+        let Fitted { problem: better, record, .. } =
             fit(&problem, &FitSettings { groups: groups.to_vec(), pull: Some(pull) }, &Silent)
                 .unwrap();
         let found = conform_all(&better);

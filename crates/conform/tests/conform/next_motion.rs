@@ -10,7 +10,8 @@ use reachtube_conform::result::Code;
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::tube::Witness;
 use reachtube_conform::{
-    Check, Error, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
+    Check, Error, Keep, Model, Notion, Problem, Settings, Setup, Silent, Tube, carry_over, check,
+    conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use tempfile::TempDir;
@@ -81,6 +82,45 @@ fn calibrated_sets_are_those_of_the_other_motions_scaled_by_the_largest_gauge() 
     assert_eq!(found.trust.average_probability, Some(1.0 / 3.0));
     assert!((found.trust.violation_probability - (1.0 - 0.05f64.sqrt())).abs() < 1e-12);
     assert_eq!((found.trust.motions, found.trust.deciding), (2, 1));
+}
+
+/// Sets that are smaller by little leave a point of a motion that was held out.
+#[test]
+fn points_calibrate_sets_by_the_factor_that_holds_them() {
+    let folder = recorded([0.3, 0.4, 0.6, 1.0]);
+    let mut before = 1.0;
+    for notion in [Notion::Hull, Notion::PhasePlane, Notion::Exact] {
+        let settings = Settings { notion, ..settings(&["c", "d"]) };
+        let problem = read(&two_joints(), folder.path(), &[], &settings);
+        let found = conform_all(&problem);
+        assert!(found.verdict.conformant, "{notion:?}");
+        let calibration = found.calibration.clone().unwrap();
+        let others = Settings { calibrate: vec![], ..settings.clone() };
+        let others = read(&two_joints(), folder.path(), &["a", "b"], &others);
+        let smallest = conform_all(&others).sets;
+        let factor =
+            |own: f64, of: f64| assert!((own / of / calibration.factor - 1.0).abs() < 1e-3);
+        let pairs = found.sets.input_set.radius.iter().zip(&smallest.input_set.radius);
+        pairs.for_each(|(own, of)| factor(*own, *of));
+        // A little less leaves a recorded point, or a row, of a motion that was held out.
+        let mut smaller = found.sets.clone();
+        let sets = [&mut smaller.initial_set, &mut smaller.input_set];
+        sets.into_iter().flat_map(|set| &mut set.radius).for_each(|radius| *radius *= 0.999);
+        let tube = Tube::new(&problem, smaller).unwrap();
+        let model = Model::new(&problem, &found);
+        assert!(!check(&model, &problem, &tube).unwrap().verdict.conformant, "{notion:?}");
+        // Leaving d out of a, b and d finds the factor again.
+        let names = ["a", "b", "d"];
+        let plain = Settings { calibrate: vec![], ..settings.clone() };
+        let with_d = read(&two_joints(), folder.path(), &names, &plain);
+        let one = [1.0; 6];
+        let (left, _) = carry_over(&with_d, "d", None, &one, &Silent).unwrap();
+        let gauge = calibration.gauges.iter().find(|gauge| gauge.motion == "d").unwrap().gauge;
+        assert!((left.gauge.unwrap() / gauge - 1.0).abs() < 1e-3, "{left:?} for {gauge}");
+        assert!(left.outside.unwrap() > 0);
+        before = calibration.factor;
+    }
+    assert!(before > 1.2);
 }
 
 #[test]

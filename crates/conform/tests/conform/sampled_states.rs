@@ -1,6 +1,9 @@
 //! Sampled states of the exact reachable sets of the paper's arm: none that a motion reaches is
 //! called unreachable, and none that is proved reachable lies beyond a direction.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use crate::common::{Random, conform_all, read, shared, step};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -38,28 +41,41 @@ struct Counts {
     outside: usize,
 }
 
+/// e^{Ah} and what inputs do within one time step h, by a series of its own.
+type Step = (DMatrix<f64>, DMatrix<f64>);
+
+/// Returns the steps of a grid. Steps of one length are computed once.
+fn steps(system: &LinearSystem, times: &[f64]) -> Vec<Arc<Step>> {
+    let (n, m) = (system.states(), system.inputs());
+    let unit = |size: usize, j: usize| DVector::from_fn(size, |i, _| f64::from(i == j));
+    let none = [n, m].map(DVector::zeros);
+    let of_length = |h: f64| {
+        let moved: Vec<DVector<f64>> =
+            (0..n).map(|i| step(system, h, &unit(n, i), &none[1])).collect();
+        let pushed: Vec<DVector<f64>> =
+            (0..m).map(|j| step(system, h, &none[0], &unit(m, j))).collect();
+        Arc::new((DMatrix::from_columns(&moved), DMatrix::from_columns(&pushed)))
+    };
+    let mut known: HashMap<u64, Arc<Step>> = HashMap::new();
+    let mut of_pair = |pair: &[f64]| {
+        let h = pair[1] - pair[0];
+        Arc::clone(known.entry(h.to_bits()).or_insert_with(|| of_length(h)))
+    };
+    times.windows(2).map(&mut of_pair).collect()
+}
+
 impl Sampled {
-    fn new(
-        system: &LinearSystem,
-        (times, k): (&[f64], usize),
-        sets: &UncertaintySets,
-        rows: &SampleGenerators,
-    ) -> Self {
-        let (n, m) = (system.states(), system.inputs());
-        let none = DVector::zeros(n);
-        let unit = |size: usize, j: usize| DVector::from_fn(size, |i, _| f64::from(i == j));
-        // Backward from sample k, so that every generator is one product.
+    /// Takes the reachable set after the given steps.
+    fn new(steps: &[Arc<Step>], sets: &UncertaintySets, rows: &SampleGenerators) -> Self {
+        let (n, k) = (sets.initial_set.radius.len(), steps.len());
+        // Backward from the last sample, so that every generator is one product.
         let mut transition = DMatrix::identity(n, n);
         let mut columns = Vec::new();
-        for at in (0..k).rev() {
-            let h = times[at + 1] - times[at];
-            for j in 0..m {
-                let pushed = step(system, h, &none, &unit(m, j));
+        for (moved, pushed) in steps.iter().rev().map(|step| &**step) {
+            for (j, pushed) in pushed.column_iter().enumerate() {
                 columns.push(&transition * pushed * sets.input_set.radius[j]);
             }
-            let moved: Vec<DVector<f64>> =
-                (0..n).map(|i| step(system, h, &unit(n, i), &DVector::zeros(m))).collect();
-            transition *= DMatrix::from_columns(&moved);
+            transition *= moved;
         }
         columns.extend((0..n).map(|i| transition.column(i) * sets.initial_set.radius[i]));
         let generators = DMatrix::from_columns(&columns);
@@ -130,13 +146,14 @@ fn tell_apart(count: usize) {
     assert_eq!(cases.len(), SUITES.len());
     for (case, name) in cases.iter().zip(SUITES) {
         let times = case.grid.times();
+        let steps = steps(&system, times);
         let grid = TimeGrid::from_times(times).unwrap();
         let propagation = Propagation::new(&system, &grid).unwrap();
         let rows = SampleGenerators::new(&propagation, Disturbance::Sample, 1).unwrap();
         let of_sample = |at: usize| {
             let k = ((at + 1) * (times.len() - 1)) / SAMPLES;
             let seed = (at + 1) as u64;
-            Sampled::new(&system, (times, k), &sets, &rows).judge(count / SAMPLES, seed)
+            Sampled::new(&steps[..k], &sets, &rows).judge(count / SAMPLES, seed)
         };
         let counts =
             (0..SAMPLES).into_par_iter().map(of_sample).reduce(Counts::default, |a, b| Counts {

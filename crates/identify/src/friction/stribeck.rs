@@ -42,7 +42,7 @@ pub(super) fn try_stribeck(
     weights: &[f64],
 ) -> (StribeckTrial, Option<f64>) {
     let range = scan_range(samples);
-    let scan = StribeckScan::new(form, samples, weights, &geometric(range));
+    let scan = StribeckScan::new(form, samples, weights, &geometric(range, SPEEDS));
     let (without, with) = scan.held_out();
     let size = |squares: &[f64]| (squares.iter().sum::<f64>() / samples.len() as f64).sqrt();
     let held_out = [size(&without), size(&with)];
@@ -62,7 +62,7 @@ pub(super) fn try_stribeck(
         ));
     }
     let near = [scan.speeds[best - 1], scan.speeds[(best + 1).min(SPEEDS - 1)]];
-    let fine = StribeckScan::new(form, samples, weights, &geometric(near));
+    let fine = StribeckScan::new(form, samples, weights, &geometric(near, SPEEDS));
     let speed = fine.best(&fine.total()).map_or(scan.speeds[best], |(at, _)| fine.speeds[at]);
     let slower = |forward: bool| {
         let slow = |s: &&FrictionSample| s.qd.abs() < speed && (s.qd > 0.0) == forward;
@@ -85,9 +85,10 @@ fn scan_range(samples: &[FrictionSample]) -> [f64; 2] {
     [slowest, fastest.max(1.1 * slowest)]
 }
 
-fn geometric([low, high]: [f64; 2]) -> Vec<f64> {
-    let ratio = (high / low).powf(1.0 / (SPEEDS - 1) as f64);
-    (0..SPEEDS).map(|k| low * ratio.powi(k as i32)).collect()
+/// Returns `count` numbers from the first to the second, each the same factor above the one before.
+pub(crate) fn geometric([low, high]: [f64; 2], count: usize) -> Vec<f64> {
+    let ratio = (high / low).powf(1.0 / (count - 1) as f64);
+    (0..count).map(|k| low * ratio.powi(k as i32)).collect()
 }
 
 /// The normal equations of every stretch of the samples at every speed of a scan.
@@ -160,7 +161,7 @@ impl StribeckScan {
 
 /// Solves the normal equations in some columns; the other entries of the result are 0. The result
 /// is `None` where they do not determine it.
-fn solve(gram: &DMatrix<f64>, columns: &[usize]) -> Option<DVector<f64>> {
+pub(crate) fn solve(gram: &DMatrix<f64>, columns: &[usize]) -> Option<DVector<f64>> {
     let last = gram.ncols() - 1;
     let scale: Vec<f64> = columns.iter().map(|c| gram[(*c, *c)].sqrt()).collect();
     if scale.iter().any(|scale| *scale <= 0.0) {
@@ -176,7 +177,7 @@ fn solve(gram: &DMatrix<f64>, columns: &[usize]) -> Option<DVector<f64>> {
 }
 
 /// Returns the sum of squared residuals of rows with this Gram matrix.
-fn squares(gram: &DMatrix<f64>, x: &DVector<f64>) -> f64 {
+pub(crate) fn squares(gram: &DMatrix<f64>, x: &DVector<f64>) -> f64 {
     let z = x.clone().push(-1.0);
     (z.transpose() * gram * &z)[(0, 0)].max(0.0)
 }

@@ -13,7 +13,8 @@ pub(crate) struct FrictionColumns {
 
 /// Returns the columns that are fitted to exciting motions.
 ///
-/// The correction of a known quadratic friction needs a column of its own.
+/// The correction of a known quadratic friction needs a column of its own. Friction that saturates
+/// has no cubic term.
 pub(crate) fn fitted_columns(
     known: &Robot,
     model: &ModelSettings,
@@ -32,7 +33,10 @@ pub(crate) fn fitted_columns(
             ParameterKind::Viscous3,
         ];
         columns.extend(Parameter::of_joints(joints, &kinds[..if friction.cubic { 4 } else { 3 }]));
-        let known = known.description().joints.iter().enumerate();
+        let known = known.description().joints.iter();
+        let saturates: Vec<bool> = known.clone().map(|joint| joint.friction.saturates()).collect();
+        columns.retain(|c| c.kind != ParameterKind::Viscous3 || !saturates[c.joint]);
+        let known = known.enumerate();
         let quadratic = known.filter(|(_, known)| known.friction.viscous[1] != 0.0);
         columns
             .extend(quadratic.map(|(joint, _)| Parameter { joint, kind: ParameterKind::Viscous2 }));

@@ -9,8 +9,10 @@ pub(crate) mod fit;
 pub(crate) mod physical;
 mod prior;
 mod reference;
+pub(crate) mod saturation;
 
 pub use base::BaseParameter;
 pub use diagonal::JointInertia;
 pub use fit::InertiaFit;
 pub use physical::PhysicalFit;
+pub use saturation::SaturatingFriction;

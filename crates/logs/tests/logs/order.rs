@@ -118,6 +118,22 @@ fn the_only_topic_with_joints_of_the_robot_is_found() {
 }
 
 #[test]
+fn messages_that_are_compressed_by_themselves_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let (states, mut all) = (states(40), messages(&states(40)));
+    for message in &mut all {
+        message.data = zstd::encode_all(&*message.data, 3).unwrap();
+    }
+    let run = run_of(read(&bag(folder.path(), &all)).unwrap());
+    assert_eq!((run.len(), run.torque(39)), (40, &expected(&states[39])[6..]));
+    let half = all[7].data.len() / 2;
+    all[7].data.truncate(half);
+    let damaged = tempfile::tempdir().unwrap();
+    let text = error(&bag(damaged.path(), &all));
+    assert!(text.contains("message 8") && text.contains("compression by zstd is dam"), "{text}");
+}
+
+#[test]
 fn files_that_are_compressed_as_a_whole_are_read() {
     let folder = tempfile::tempdir().unwrap();
     let states = states(40);

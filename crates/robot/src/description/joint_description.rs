@@ -91,7 +91,7 @@ pub struct FrictionDescription {
     /// \[N s²/m²\], \[N s³/m³\] for a prismatic joint.
     #[serde(default)]
     pub viscous: [f64; 3],
-    /// Rise of dry friction toward standstill; none by default.
+    /// Rise of dry friction toward standstill, or its fall with a negative excess; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stribeck: Option<Stribeck>,
     /// Change of friction while the joint warms up; unknown by default.
@@ -121,6 +121,22 @@ pub struct FrictionErrors {
 }
 
 impl FrictionDescription {
+    /// Returns whether a part of dry friction builds up with speed: a Stribeck effect with a
+    /// negative excess.
+    #[must_use]
+    pub fn saturates(&self) -> bool {
+        self.stribeck.is_some_and(|law| law.excess < 0.0)
+    }
+
+    /// Returns whether dry friction without load, in the mean over the quadrants, does not drive
+    /// the joint near standstill.
+    #[must_use]
+    pub fn dissipates_at_standstill(&self) -> bool {
+        let mean = self.coulomb.iter().step_by(2).map(|offset| offset.abs()).sum::<f64>() / 4.0;
+        // Rounding of a sum that is 0.
+        self.stribeck.is_none_or(|law| mean * (1.0 + 1e-9) + law.excess >= 0.0)
+    }
+
     /// Returns the friction where Coulomb and viscous friction have these factors, without the law
     /// of warming.
     #[must_use]

@@ -217,10 +217,13 @@ fn check_stribeck(joint: &JointDescription) -> Checked {
     let Some(Stribeck { excess, speed }) = joint.friction.stribeck else { return Ok(()) };
     finite("friction", &[excess, speed])?;
     require(
-        excess >= 0.0,
+        joint.friction.dissipates_at_standstill(),
         "friction",
-        "give breakaway minus Coulomb friction, at least 0",
-        || format!("stribeck: excess = {excess} {} is negative", joint.kind.force_unit()),
+        "give breakaway minus Coulomb friction; a negative excess must not exceed Coulomb friction",
+        || {
+            let unit = joint.kind.force_unit();
+            format!("stribeck: with excess = {excess} {unit}, friction drives near standstill")
+        },
     )?;
     require(speed > 0.0, "friction", "give a positive speed, or remove `stribeck`", || {
         format!("stribeck: speed = {speed} {} is not positive", joint.kind.velocity_unit())

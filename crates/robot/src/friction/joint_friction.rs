@@ -17,7 +17,7 @@ pub struct Friction {
     pub coulomb: Coulomb,
     /// Viscous friction tau_v.
     pub viscous: Viscous,
-    /// Rise of dry friction toward standstill, if there is one. It is part of tau_c.
+    /// Rise of dry friction toward standstill, or its fall, if there is one. It is part of tau_c.
     pub stribeck: Option<Stribeck>,
     /// Change of friction while the joint warms up, if it is known. Torques hold at the law's
     /// reference; [`Robot::at_temperature`](crate::Robot::at_temperature) and

@@ -1,10 +1,13 @@
-//! The Stribeck effect: dry friction that rises toward standstill.
+//! The Stribeck effect: dry friction that rises toward standstill, or saturates with speed.
 
 use reachtube_scalar::Lanewise;
 use serde::{Deserialize, Serialize};
 
 /// The rise of dry friction toward standstill (Stribeck effect), added to Coulomb friction:
 /// (F_s - F_c) exp(-(q̇/v_s)²) sign(q̇) \[N m\].
+///
+/// With a negative excess, dry friction builds up from F_s at standstill to F_c over the speed v_s.
+/// This is friction that saturates, as strain-wave gears show it.
 ///
 /// # Examples
 ///
@@ -19,7 +22,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stribeck {
-    /// Breakaway minus Coulomb friction F_s - F_c \[N m; N\], at least 0.
+    /// Breakaway minus Coulomb friction F_s - F_c \[N m; N\], at least -F_c.
     pub excess: f64,
     /// Stribeck speed v_s \[rad/s; m/s\], above 0.
     pub speed: f64,

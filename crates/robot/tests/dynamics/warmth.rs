@@ -125,7 +125,10 @@ fn laws_that_cannot_be_are_refused_with_joint_and_remedy() {
     let refused = |laws: &str| arm(laws).unwrap_err();
     let place = "arm.toml:11: joint `hinge`: ";
     for (laws, problem) in [
-        ("stribeck = { excess = -1.0, speed = 0.1 }", "stribeck: excess = -1 N m is negative"),
+        (
+            "stribeck = { excess = -1.0, speed = 0.1 }",
+            "stribeck: with excess = -1 N m, friction drives near standstill",
+        ),
         ("stribeck = { excess = 1.0, speed = 0.0 }", "stribeck: speed = 0 rad/s is not positive"),
         ("stribeck = { excess = nan, speed = 0.1 }", "friction contains NaN"),
         ("warming = { by = \"runs\", reference = 0.0 }", "warming: reference = 0 is no run"),

@@ -42,7 +42,7 @@ impl<'a> Terms<'a> {
         let Self { robot, workspace, mass, bias, gravity, rest } = self;
         robot.crba(&sin, &cos, workspace, mass);
         robot.rnea(&sin, &cos, qd, rest, workspace, bias);
-        robot.rnea(&sin, &cos, rest, rest, workspace, gravity);
+        robot.gravity(&sin, &cos, workspace, gravity);
     }
 }
 

@@ -3,13 +3,16 @@
 use rayon::prelude::*;
 use reachtube_conform::Problem;
 use reachtube_conform::data::Suite;
+use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use serde::Serialize;
 
 use crate::stop::brakes::Brakes;
-use crate::stop::stop::{JointStop, stop_0};
+use crate::stop::category::Category;
+use crate::stop::path::Path;
+use crate::stop::stop::{JointStop, Stop};
 
-/// The stops of a joint from the samples of a suite.
+/// The stops of a joint from the samples of a motion.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WorstStop {
     /// The suite.
@@ -26,56 +29,105 @@ pub struct WorstStop {
     pub time_from: f64,
     /// Number of samples from which a standstill is proved.
     pub proved: usize,
-    /// Number of samples.
+    /// Number of samples from which a stop was followed.
     pub samples: usize,
+    /// Number of samples whose deceleration would lead beyond the end of the motion.
+    pub skipped: usize,
 }
 
-/// Encloses the stops of category 0 from the samples of all suites of a problem, every `every`th of
-/// them: from all states between the lowest and the highest recorded ones, and returns the worst
-/// for each suite and joint.
+/// Encloses the stops from the samples of all suites of a problem, every `every`th of them: from
+/// all states between the lowest and the highest recorded ones, along the path in the middle of
+/// them. Returns the worst for each suite and joint.
 ///
 /// # Guarantee
 ///
-/// Outer, as [`stop_0`]. Ways and times of samples without a proved standstill are infinite.
+/// Outer, as [`Category::stop`]. Ways and times are infinite if a sample has no proved standstill.
 #[must_use]
-pub fn stops_along(problem: &Problem, brakes: &Brakes, every: usize) -> Vec<WorstStop> {
-    let suites = problem.recordings().suites.iter();
-    suites.flat_map(|suite| of_suite(problem, brakes, suite, every.max(1))).collect()
+pub fn stops_along(
+    problem: &Problem,
+    brakes: &Brakes,
+    category: &Category,
+    every: usize,
+) -> Vec<WorstStop> {
+    let of_suite = |suite: &Suite| {
+        let motion = Motion::of(suite, 2 * problem.joints());
+        let stops = motion.stops(problem.robot(), brakes, category, every.max(1));
+        worst(problem.robot(), &suite.entry.name, &stops)
+    };
+    problem.recordings().suites.iter().flat_map(of_suite).collect()
 }
 
-fn of_suite(problem: &Problem, brakes: &Brakes, suite: &Suite, every: usize) -> Vec<WorstStop> {
-    let (robot, n) = (problem.robot(), problem.joints());
-    let times = suite.runs.first().map_or(&[][..], |run| run.grid.times());
-    let from_sample = |k: usize| {
-        let side = |i: usize| {
+/// The stop from the sample at a time (s); `None` if its path ends too early.
+type FromSample = (f64, Option<Stop>);
+
+/// A recorded motion: sample times, and the states at them.
+struct Motion<'a> {
+    times: &'a [f64],
+    /// Row-major, samples x 2n.
+    states: Vec<Interval>,
+    width: usize,
+}
+
+impl<'a> Motion<'a> {
+    fn of(suite: &'a Suite, width: usize) -> Self {
+        let times = suite.runs.first().map_or(&[][..], |run| run.grid.times());
+        let times = &times[..times.len().min(suite.envelope.len())];
+        let side = |at: usize| {
+            let (k, i) = (at / width, at % width);
             let (low, high) = (suite.envelope.lower(k, i), suite.envelope.upper(k, i));
             Interval::point(low).hull(Interval::point(high))
         };
-        (k, stop_0(robot, brakes, &(0..2 * n).map(side).collect::<Vec<_>>()))
-    };
-    let samples = times.len().min(suite.envelope.len());
-    let all: Vec<_> =
-        (0..samples).into_par_iter().filter(|k| k % every == 0).map(from_sample).collect();
-    let worst = |joint: usize| {
+        Self { times, states: (0..times.len() * width).map(side).collect(), width }
+    }
+
+    /// Encloses the stops from every `every`th sample.
+    fn stops(
+        &self,
+        robot: &Robot,
+        brakes: &Brakes,
+        category: &Category,
+        every: usize,
+    ) -> Vec<FromSample> {
+        if self.times.len() < 2 {
+            return Vec::new();
+        }
+        let middle: Vec<f64> = self.states.iter().map(|side| side.mid()).collect();
+        let path = Path::through(self.times, &middle);
+        let from_sample = |k: usize| {
+            let state = &self.states[k * self.width..(k + 1) * self.width];
+            let time = self.times[k];
+            (time, category.stop(robot, brakes, (&path, time), state))
+        };
+        let samples = (0..self.times.len()).into_par_iter();
+        samples.filter(|k| k % every == 0).map(from_sample).collect()
+    }
+}
+
+/// Returns the worst stop of each joint.
+fn worst(robot: &Robot, suite: &str, stops: &[FromSample]) -> Vec<WorstStop> {
+    let followed = || stops.iter().filter_map(|(time, stop)| Some((*time, stop.as_ref()?)));
+    let samples = followed().count();
+    let of_joint = |joint: usize| {
         let of = |value: fn(&JointStop) -> f64| {
-            let values = all.iter().map(|(k, stop)| {
+            let values = followed().map(|(time, stop)| {
                 let bound = if stop.stands { value(&stop.joints[joint]) } else { f64::INFINITY };
-                (bound, times[*k])
+                (bound, time)
             });
             values.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default()
         };
         let (way, way_from) = of(|joint| joint.way[1].max(-joint.way[0]));
         let (time, time_from) = of(|joint| joint.time[1]);
         WorstStop {
-            suite: suite.entry.name.clone(),
+            suite: suite.into(),
             joint: robot.joints()[joint].name.clone(),
             way,
             way_from,
             time,
             time_from,
-            proved: all.iter().filter(|(_, stop)| stop.stands).count(),
-            samples: all.len(),
+            proved: followed().filter(|(_, stop)| stop.stands).count(),
+            samples,
+            skipped: stops.len() - samples,
         }
     };
-    (0..n).map(worst).collect()
+    (0..robot.joint_count()).map(of_joint).collect()
 }

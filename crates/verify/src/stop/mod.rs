@@ -2,7 +2,15 @@
 
 mod accelerations;
 pub(crate) mod along;
+pub(crate) mod annex_b;
 pub(crate) mod brakes;
+pub(crate) mod category;
+pub(crate) mod deceleration;
+mod extension;
+pub(crate) mod path;
+pub(crate) mod recorded;
 #[expect(clippy::module_inception, reason = "the stop is the concept of this folder")]
 pub(crate) mod stop;
+pub(crate) mod study;
+pub(crate) mod text;
 mod velocity_bounds;

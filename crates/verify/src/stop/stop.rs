@@ -1,6 +1,7 @@
-//! Enclosed stops: category 0, drives off and brakes on.
+//! Enclosed stops: drives off and brakes on at once (category 0), or after a controlled
+//! deceleration (category 1).
 
-use reachtube_reach::StepBounds;
+use reachtube_reach::{Hyperrectangle, StepBounds};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_down, add_up};
@@ -8,12 +9,14 @@ use serde::Serialize;
 
 use crate::stop::accelerations::{Accelerations, Terms, holding_torque};
 use crate::stop::brakes::Brakes;
+use crate::stop::deceleration::Deceleration;
 use crate::stop::velocity_bounds::{lower_after, lower_way, upper_after, upper_way};
 
 /// Length of a step, s.
 const STEP: f64 = 0.002;
 
-/// The time after which a robot that moves still counts as one that does not stop, s.
+/// The time after the drives are off from which a robot that still moves counts as one that does
+/// not stop, s.
 const LONGEST: f64 = 5.0;
 
 /// How often the enclosure of a step is widened before the stop counts as lost.
@@ -69,7 +72,7 @@ pub struct Stop {
 /// use reachtube_scalar::Interval;
 /// use reachtube_verify::{Brakes, stop_0};
 ///
-/// let brakes = Brakes { torque: vec![[40.0, 50.0]; 6], delay: [0.0, 0.02], error: vec![0.0; 6] };
+/// let brakes = Brakes::new(vec![[40.0, 50.0]; 6], [0.0, 0.02]);
 /// let mut state = [Interval::ZERO; 12];
 /// state[6] = Interval::point(1.0);
 /// let stop = stop_0(&Robot::lwa4p(), &brakes, &state);
@@ -78,23 +81,82 @@ pub struct Stop {
 /// ```
 #[must_use]
 pub fn stop_0(robot: &Robot, brakes: &Brakes, state: &[Interval]) -> Stop {
+    Run::new(robot, brakes, None, state).follow()
+}
+
+/// Encloses the stop of category 1 from every state in a box, as [`stop_0`]: the robot moves under
+/// the torques of a deceleration, of which each may be off by any vector of `input_set`, which may
+/// change at any time. Then the drives are off, and the brakes hold after their delay.
+///
+/// The set of a conformant model bounds the error of the torque in its equations, and is taken as
+/// the error of the torque in the robot's.
+///
+/// # Guarantee
+///
+/// Outer, directed rounding, for the robot's constants as loaded: every solution under any error
+/// in `input_set`, and any brake torques and delays within the bounds.
+///
+/// # Panics
+///
+/// Panics when an argument is of another number of joints.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_reach::Hyperrectangle;
+/// use reachtube_robot::Robot;
+/// use reachtube_scalar::Interval;
+/// use reachtube_verify::{Brakes, Deceleration, Path, stop_1};
+///
+/// let robot = Robot::lwa4p();
+/// let brakes = Brakes::new(vec![[40.0, 50.0]; 6], [0.0, 0.02]);
+/// let (q, qd) = ([0.0; 6], [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+/// let path = Path::straight(&q, &qd, 1.0);
+/// let slow = Deceleration::along(&robot, &path, 0.0, &[4.0; 6]).unwrap();
+/// let errors = Hyperrectangle { centre: vec![0.0; 6], radius: vec![0.1; 6] };
+/// let state: Vec<Interval> = q.iter().chain(&qd).map(|x| Interval::point(*x)).collect();
+/// let stop = stop_1(&robot, &brakes, &slow, &errors, &state);
+/// // 0.25 s from 1 rad/s: the way is 0.125 rad.
+/// let [least, greatest] = stop.joints[0].way;
+/// assert!(stop.stands && 0.11 < least && least < 0.125 && 0.125 < greatest && greatest < 0.14);
+/// ```
+#[must_use]
+pub fn stop_1(
+    robot: &Robot,
+    brakes: &Brakes,
+    deceleration: &Deceleration,
+    input_set: &Hyperrectangle,
+    state: &[Interval],
+) -> Stop {
+    let side = |(centre, radius): (&f64, &f64)| Interval::centred(*centre, *radius);
+    let error: Vec<Interval> = input_set.centre.iter().zip(&input_set.radius).map(side).collect();
     let n = robot.joint_count();
-    assert_eq!(state.len(), 2 * n, "a state has a position and a velocity for each joint");
-    assert_eq!(brakes.torque.len(), n, "the brakes are of another robot");
-    let mut run = Run::new(robot, brakes, state);
-    while !run.all_stand() && run.time < LONGEST {
-        if !run.advance() {
-            return run.finish(false);
-        }
-    }
-    let stands = run.all_stand() && run.holds_for_good();
-    run.finish(stands)
+    assert!(error.len() == n && deceleration.torques().len().is_multiple_of(n), "of another robot");
+    // The delay of the brakes counts from the end of the deceleration.
+    let after = deceleration.duration();
+    let [earliest, latest] = brakes.delay;
+    let delay = [add_down(after, earliest), add_up(after, latest)];
+    let brakes = Brakes { delay, ..brakes.clone() };
+    Run::new(robot, &brakes, Some(Drive { deceleration, error, cycle: 0 }), state).follow()
+}
+
+/// The drives while they decelerate the robot.
+struct Drive<'a> {
+    deceleration: &'a Deceleration,
+    /// The error of the torque.
+    error: Vec<Interval>,
+    /// The cycle that is followed next.
+    cycle: usize,
 }
 
 /// A stop as it is followed.
 struct Run<'a> {
     robot: &'a Robot,
     brakes: &'a Brakes,
+    /// `None` once the drives are off.
+    drive: Option<Drive<'a>>,
+    /// When the drives are off, s.
+    off: f64,
     terms: Terms<'a>,
     time: f64,
     q: Vec<Interval>,
@@ -105,6 +167,8 @@ struct Run<'a> {
     joints: Vec<JointStop>,
     times: Vec<f64>,
     boxes: Vec<Interval>,
+    /// The accelerations of the step before.
+    known: Vec<Interval>,
 }
 
 /// What is known about the states over a step.
@@ -115,12 +179,22 @@ struct Step {
 }
 
 impl<'a> Run<'a> {
-    fn new(robot: &'a Robot, brakes: &'a Brakes, state: &[Interval]) -> Self {
+    fn new(
+        robot: &'a Robot,
+        brakes: &'a Brakes,
+        drive: Option<Drive<'a>>,
+        state: &[Interval],
+    ) -> Self {
         let n = robot.joint_count();
+        assert_eq!(state.len(), 2 * n, "a state has a position and a velocity for each joint");
+        assert_eq!(brakes.torque.len(), n, "the brakes are of another robot");
+        let off = drive.as_ref().map_or(0.0, |drive| drive.deceleration.duration());
         let (q, qd) = state.split_at(n);
         Self {
             robot,
             brakes,
+            drive: drive.filter(|_| off > 0.0),
+            off,
             terms: Terms::new(robot),
             time: 0.0,
             q: q.to_vec(),
@@ -129,7 +203,19 @@ impl<'a> Run<'a> {
             joints: vec![JointStop { time: [0.0, f64::INFINITY], way: [0.0; 2] }; n],
             times: vec![0.0],
             boxes: Vec::new(),
+            known: vec![Interval::ZERO; n],
         }
+    }
+
+    /// Follows the stop to its end.
+    fn follow(mut self) -> Stop {
+        while !self.all_stand() && self.time < self.off + LONGEST {
+            if !self.advance() {
+                return self.finish(false);
+            }
+        }
+        let stands = self.all_stand() && self.holds_for_good();
+        self.finish(stands)
     }
 
     fn all_stand(&self) -> bool {
@@ -138,9 +224,7 @@ impl<'a> Run<'a> {
 
     /// Goes on by a step; false if no enclosure of it was found.
     fn advance(&mut self) -> bool {
-        let next = |event: f64| (event > self.time).then_some(event);
-        let events = self.brakes.delay.into_iter().filter_map(next);
-        let end = events.fold(self.time + STEP, f64::min);
+        let end = self.end_of_step();
         let Some(step) = self.enclose(end) else { return false };
         let n = self.q.len();
         let mut after = self.v.clone();
@@ -172,8 +256,22 @@ impl<'a> Run<'a> {
         self.v = after;
         self.time = end;
         self.times.push(end);
+        if let Some(drive) = &mut self.drive {
+            drive.cycle += 1;
+            self.drive.take_if(|_| end >= self.off);
+        }
         self.note_standstill();
         true
+    }
+
+    /// Returns when the next step ends: with the cycle of the drives, or where a delay ends.
+    fn end_of_step(&self) -> f64 {
+        if let Some(drive) = &self.drive {
+            return drive.deceleration.end_of(drive.cycle + 1);
+        }
+        let next = |event: f64| (event > self.time).then_some(event);
+        let events = self.brakes.delay.into_iter().filter_map(next);
+        events.fold(self.time + STEP, f64::min)
     }
 
     /// Encloses the accelerations until `end`: the velocities of a box that contains them all lead
@@ -182,8 +280,8 @@ impl<'a> Run<'a> {
         let n = self.q.len();
         let duration = (Interval::point(end) - self.time).hi();
         let span = Interval::ZERO.hull(Interval::point(duration));
-        let mut guess = vec![Interval::ZERO; n];
-        for _ in 0..ATTEMPTS {
+        let mut guess = self.known.clone();
+        for attempt in 0..ATTEMPTS {
             let now = |joint: usize| hull(self.v[joint][0], self.v[joint][1]);
             let v: Vec<Interval> = (0..n).map(|joint| now(joint) + span * guess[joint]).collect();
             let q: Vec<Interval> = (0..n).map(|joint| self.q[joint] + span * v[joint]).collect();
@@ -200,12 +298,16 @@ impl<'a> Run<'a> {
             }
             let all = &accelerations.all;
             let fits = |(index, joint): (usize, &usize)| guess[*joint].encloses(&all[index]);
-            if moving.iter().enumerate().all(fits) {
-                return Some(Step { duration, moving, accelerations });
-            }
+            let found = moving.iter().enumerate().all(fits);
             for (index, &joint) in moving.iter().enumerate() {
-                let wider = all[index].hull(guess[joint]);
+                // What the step before left in the guess is dropped once, and kept later on.
+                let wider =
+                    if found || attempt == 0 { all[index] } else { all[index].hull(guess[joint]) };
                 guess[joint] = wider + Interval::centred(0.0, 0.1 * wider.mag() + 1e-9);
+            }
+            if found {
+                self.known = guess;
+                return Some(Step { duration, moving, accelerations });
             }
         }
         None
@@ -235,7 +337,10 @@ impl<'a> Run<'a> {
         let friction = &self.robot.joints()[joint].friction;
         let friction = friction.range_near_zero(self.terms.gravity[joint], velocity);
         let error = Interval::centred(0.0, self.brakes.error[joint]);
-        -self.terms.bias[joint] - friction - brake + error
+        let driven = self.drive.as_ref().map_or(Interval::ZERO, |drive| {
+            drive.error[joint] + drive.deceleration.torque(drive.cycle, joint)
+        });
+        driven - self.terms.bias[joint] - friction - brake + error
     }
 
     /// Notes which joints stand from now on, and since when at the earliest.
@@ -243,8 +348,10 @@ impl<'a> Run<'a> {
         for joint in 0..self.q.len() {
             let [low, high] = self.v[joint];
             let JointStop { time, .. } = &mut self.joints[joint];
-            if !self.stands[joint] && low == 0.0 && high == 0.0 {
+            let is_off = self.drive.is_none();
+            if is_off && !self.stands[joint] && low == 0.0 && high == 0.0 {
                 self.stands[joint] = true;
+                self.known[joint] = Interval::ZERO;
                 time[1] = self.time;
             }
             // A joint that surely moves at the end of a step stands later at the earliest.

@@ -38,7 +38,15 @@ pub(super) fn upper_after(
             return end;
         }
     }
-    // At 0, or where the line crosses it: what a positive velocity would do from there.
+    // At 0: below it if every torque of standstill leads there.
+    if upper == 0.0 {
+        let below = Interval::point(0.0).hull(Interval::point(along(0.0).lo().min(0.0)));
+        let slope = rate(below).max(range.lo());
+        if slope < 0.0 {
+            return mul_up(duration, slope);
+        }
+    }
+    // Where the line crosses 0, or at 0: what a positive velocity would do from there.
     let line = along(0.0).intersection(positive).unwrap_or(positive);
     mul_up(duration, rate(line)).max(0.0)
 }
@@ -83,6 +91,16 @@ mod tests {
         let lowest = |v: Interval| if v.lo() > 0.0 { -3.5 } else { 1.5 };
         assert_eq!(lower_after(0.1, 0.1, range, lowest), 0.0);
         assert!((lower_after(1.0, 0.1, range, lowest) - 0.65).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_push_moves_a_bound_away_from_standstill() {
+        let range = Interval::new(-4.0, -1.0).unwrap();
+        assert!((upper_after(0.0, 0.1, range, |_| -1.0) + 0.1).abs() < 1e-12);
+        // Friction that may hold the mass keeps the bound.
+        let held = |v: Interval| if v.contains(0.0) { 1.0 } else { -1.0 };
+        let range = Interval::new(-4.0, 1.0).unwrap();
+        assert_eq!(upper_after(0.0, 0.1, range, held), 0.0);
     }
 
     #[test]

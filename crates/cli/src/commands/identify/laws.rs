@@ -1,7 +1,8 @@
 //! What `identify` prints about friction laws.
 
 use reachtube::identify::{
-    FrictionFit, Identification, JointWarming, LawGain, StribeckTrial, WarmingCandidate, WarmingFit,
+    FrictionFit, Identification, JointWarming, LawGain, SaturatingFriction, StribeckTrial,
+    WarmingCandidate, WarmingFit,
 };
 use reachtube::number::four_decimals;
 use reachtube::units::ColumnUnit;
@@ -10,17 +11,36 @@ use reachtube_robot::friction::WarmingBy;
 
 use crate::table::table;
 
-/// Returns the section about friction laws; it is empty where none was asked for.
+/// Returns the section about friction laws; it is empty where none was asked for or found.
 pub(super) fn laws(found: &Identification) -> String {
-    let Some(gain) = &found.laws else { return String::new() };
+    let saturating = saturating(found);
+    let Some(gain) = &found.laws else {
+        let title = if saturating.is_empty() { "" } else { "\nfriction laws\n" };
+        return format!("{title}{saturating}");
+    };
     let stribeck = stribeck(found);
     let warming = found.warming.as_ref().map_or_else(String::new, |fit| warming(found, fit));
-    format!("\nfriction laws\n{stribeck}{warming}{}", gains(found, gain))
+    format!("\nfriction laws\n{saturating}{stribeck}{warming}{}", gains(found, gain))
 }
 
 /// Returns the unit of torques.
 fn force(found: &Identification) -> ColumnUnit {
     ColumnUnit::new(&found.description.kinds(), JointKind::force_unit)
+}
+
+/// Returns the table of the joints whose friction saturates.
+fn saturating(found: &Identification) -> String {
+    if found.saturating.is_empty() {
+        return String::new();
+    }
+    let row = |law: &SaturatingFriction| {
+        let numbers = [law.held_out[0], law.held_out[1], law.builds_up, law.speed];
+        let numbers = numbers.into_iter().map(four_decimals);
+        std::iter::once(law.joint.clone()).chain(numbers).collect()
+    };
+    let header =
+        ["friction saturates", "residual without", "held-out residual with", "builds up", "over"];
+    table(&header, &found.saturating.iter().map(row).collect::<Vec<_>>())
 }
 
 /// Returns the table of the Stribeck effect of each joint that was tried.

@@ -1,6 +1,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use reachtube_scalar::Kernel;
 
-use crate::sets::membership::blocks::{Blocks, Lanes, total};
+use crate::sets::membership::blocks::{Blocks, Lanes, total, vectorised};
 use crate::sets::membership::rows::GeneratorRows;
 
 /// Steps with the matrix of all generators, which is factored once, before the steps of Newton's
@@ -300,15 +301,7 @@ fn gram_of_free(
 /// where it is there, less where the derivative changed its sign, and more where it did not. The
 /// function itself never falls: its derivative does, so that a derivative above 0 shows a rise.
 fn line_search(at_step: f64, along: &[Lanes], change: &[Lanes]) -> f64 {
-    let slope = |t: f64| {
-        let mut sums = [0.0; 8];
-        for (z, w) in along.iter().zip(change) {
-            for lane in 0..sums.len() {
-                sums[lane] += (z[lane] + t * w[lane]).clamp(-1.0, 1.0) * w[lane];
-            }
-        }
-        at_step - total(&sums)
-    };
+    let slope = |t: f64| at_step - vectorised(AlongStep { t, along, change });
     let (mut low, mut high) = (0.0, 1.0);
     let (start, at_one) = (slope(0.0).abs(), slope(1.0));
     // The derivative falls. Where it is below 0 at the end, it is no lower in the second half, and
@@ -337,4 +330,26 @@ fn line_search(at_step: f64, along: &[Lanes], change: &[Lanes]) -> f64 {
         }
     }
     low
+}
+
+/// pᵀ G clip(z + t w), with w = Gᵀ p.
+struct AlongStep<'a> {
+    t: f64,
+    along: &'a [Lanes],
+    change: &'a [Lanes],
+}
+
+impl Kernel for AlongStep<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let mut sums = [0.0; 8];
+        for (z, w) in self.along.iter().zip(self.change) {
+            for lane in 0..sums.len() {
+                sums[lane] += (z[lane] + self.t * w[lane]).clamp(-1.0, 1.0) * w[lane];
+            }
+        }
+        total(&sums)
+    }
 }

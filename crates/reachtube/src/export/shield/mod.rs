@@ -62,7 +62,7 @@ enum Links<'a> {
     /// As this robot and these capsules have them: the file is written whole.
     Own(&'a Robot, &'a Capsules),
     /// As the shield's own file has them.
-    File(&'a ShieldFile, LinkFile),
+    File(&'a ShieldFile, Box<LinkFile>),
 }
 
 impl Shield {
@@ -117,7 +117,7 @@ impl<'a> Links<'a> {
         updates: &'a [ShieldFile],
     ) -> Result<Self, ExportError> {
         match (updates.iter().find(|file| is_of_links(file)), capsules) {
-            (Some(file), _) => Ok(Self::File(file, LinkFile::read(file, robot)?)),
+            (Some(file), _) => Ok(Self::File(file, Box::new(LinkFile::read(file, robot)?))),
             (None, Some(capsules)) => Ok(Self::Own(robot, capsules)),
             (None, None) => Err(ExportError::Shield {
                 place: robot.name().into(),

@@ -1,0 +1,68 @@
+use reachtube_reach::Hyperrectangle;
+use reachtube_robot::Robot;
+use reachtube_scalar::Interval;
+
+use crate::stop::brakes::Brakes;
+use crate::stop::deceleration::Deceleration;
+use crate::stop::path::Path;
+use crate::stop::stop::{Stop, stop_0, stop_1};
+
+/// How a robot is stopped (IEC 60204-1).
+#[derive(Debug, Clone, PartialEq)]
+pub enum Category {
+    /// Drives off and brakes on at once.
+    Zero,
+    /// A controlled deceleration along the path, then drives off and brakes on.
+    One {
+        /// The greatest deceleration of each joint on a straight path \[rad/s²; m/s²\].
+        limits: Vec<f64>,
+        /// How far the torque of each joint may be from the controller's, as the model's U.
+        input_set: Hyperrectangle,
+    },
+}
+
+impl Category {
+    /// Returns category 1 with the deceleration of the brakes' file and the error of the drives'
+    /// torque; `None` if the file has no deceleration.
+    #[must_use]
+    pub fn one(brakes: &Brakes, input_set: &Hyperrectangle) -> Option<Self> {
+        let limits = brakes.deceleration.clone()?;
+        Some(Self::One { limits, input_set: input_set.clone() })
+    }
+
+    /// Returns the number of the category, 0 or 1.
+    #[must_use]
+    pub fn number(&self) -> u8 {
+        match self {
+            Self::Zero => 0,
+            Self::One { .. } => 1,
+        }
+    }
+
+    /// Encloses the stop that begins at the time `from` (s) of a path, from all states of a box.
+    /// `None` if the path ends before the deceleration does.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, as [`stop_0`] and [`stop_1`].
+    ///
+    /// # Panics
+    ///
+    /// Panics when an argument is of another number of joints.
+    #[must_use]
+    pub fn stop(
+        &self,
+        robot: &Robot,
+        brakes: &Brakes,
+        (path, from): (&Path, f64),
+        state: &[Interval],
+    ) -> Option<Stop> {
+        Some(match self {
+            Self::Zero => stop_0(robot, brakes, state),
+            Self::One { limits, input_set } => {
+                let deceleration = Deceleration::along(robot, path, from, limits)?;
+                stop_1(robot, brakes, &deceleration, input_set, state)
+            }
+        })
+    }
+}

@@ -1,0 +1,110 @@
+//! Recorded stops beside the enclosed ones.
+
+use reachtube_recordings::{GapLimit, ReadOptions, Run, RunSource};
+use reachtube_robot::Robot;
+use reachtube_scalar::Interval;
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::stop::brakes::Brakes;
+use crate::stop::category::Category;
+use crate::stop::path::Path;
+
+/// A joint stands while its speed is at most this part of its greatest one in the recording.
+const STANDS: f64 = 0.01;
+
+/// Number of joints of each recording in the table.
+const JOINTS: usize = 3;
+
+/// How long the path of a stop goes on, s.
+const PATH: f64 = 100.0;
+
+/// A joint in a recorded stop, and the stop that is proved from the first recorded state.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordedStop {
+    /// The recording.
+    pub recording: String,
+    /// The joint.
+    pub joint: String,
+    /// Its velocity when the stop begins, rad/s or m/s.
+    pub velocity: f64,
+    /// The measured way, rad or m, with its sign.
+    pub way: f64,
+    /// The measured time of standstill, s; `None` if the joint moves until the end.
+    pub time: Option<f64>,
+    /// The least and the greatest proved way; infinite if no standstill is proved.
+    pub proved_way: [f64; 2],
+    /// The latest proved time of standstill, s; infinite if none is proved.
+    pub proved_time: f64,
+    /// Whether the measured way lies within the proved ones, and the time is not later.
+    pub is_within: bool,
+}
+
+/// Compares the recordings of stops with what is proved from their first states, for the three
+/// joints of each that move the most. Each recording begins when the stop begins; in a stop of
+/// category 1 the path is straight from there.
+///
+/// # Errors
+///
+/// The defects of a recording.
+pub fn recorded_stops(
+    robot: &Robot,
+    brakes: &Brakes,
+    category: &Category,
+    source: &dyn RunSource,
+) -> Result<Vec<RecordedStop>> {
+    let options =
+        ReadOptions { joints: Some(robot.joint_count()), gap_limit: GapLimit::Usual, until: None };
+    let mut all = Vec::new();
+    for index in 0..source.runs().len() {
+        let run = source.read(index, &options).map_err(reachtube_recordings::Error::Defects)?;
+        let name = source.runs()[index].file.clone();
+        all.extend(compared(robot, brakes, category, (&name, &run)));
+    }
+    Ok(all)
+}
+
+fn compared(
+    robot: &Robot,
+    brakes: &Brakes,
+    category: &Category,
+    (name, run): (&str, &Run),
+) -> Vec<RecordedStop> {
+    let (n, last) = (robot.joint_count(), run.len() - 1);
+    let state: Vec<Interval> = run.state(0).iter().map(|x| Interval::point(*x)).collect();
+    let path = Path::straight(run.q(0), run.qd(0), PATH);
+    let stop = category.stop(robot, brakes, (&path, 0.0), &state).filter(|stop| stop.stands);
+    let of_joint = |joint: usize| {
+        let way = run.q(last)[joint] - run.q(0)[joint];
+        let speed = |k: usize| run.qd(k)[joint].abs();
+        let greatest = (0..=last).map(speed).fold(0.0, f64::max);
+        let moving = (0..=last).rev().find(|k| speed(*k) > STANDS * greatest);
+        // It stands between the sample at which it moves last, and the next.
+        let [earliest, time] = match moving {
+            None => [0.0, 0.0].map(Some),
+            Some(k) if k < last => [k, k + 1].map(|k| Some(run.times[k])),
+            Some(_) => [None; 2],
+        };
+        let unproved = ([f64::NEG_INFINITY, f64::INFINITY], f64::INFINITY);
+        let (proved_way, proved_time) = stop.as_ref().map_or(unproved, |stop| {
+            let found = &stop.joints[joint];
+            (found.way, found.time[1])
+        });
+        RecordedStop {
+            recording: name.into(),
+            joint: robot.joints()[joint].name.clone(),
+            velocity: run.qd(0)[joint],
+            way,
+            time,
+            proved_way,
+            proved_time,
+            is_within: proved_way[0] <= way
+                && way <= proved_way[1]
+                && earliest.is_some_and(|time| time <= proved_time),
+        }
+    };
+    let mut joints: Vec<RecordedStop> = (0..n).map(of_joint).collect();
+    joints.sort_by(|a, b| b.way.abs().total_cmp(&a.way.abs()));
+    joints.truncate(JOINTS);
+    joints
+}

@@ -1,0 +1,85 @@
+//! All that is asked about the stops of a robot.
+
+use reachtube_conform::{Problem, UncertaintySets};
+use reachtube_recordings::RunSource;
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::stop::along::{WorstStop, stops_along};
+use crate::stop::annex_b::{AnnexB, annex_b};
+use crate::stop::brakes::Brakes;
+use crate::stop::category::Category;
+use crate::stop::recorded::{RecordedStop, recorded_stops};
+
+/// What is asked about the stops of a robot.
+#[derive(Debug)]
+pub struct StopQuestion<'a> {
+    /// The brakes.
+    pub brakes: &'a Brakes,
+    /// How the robot is stopped along the motions, and was in the recorded stops.
+    pub category: &'a Category,
+    /// A stop begins at every sample of this number, from 1.
+    pub every: usize,
+    /// Whether the table of ISO 10218-1 is made.
+    pub table: bool,
+    /// Recorded stops, if there are any.
+    pub recorded: Option<&'a dyn RunSource>,
+}
+
+/// What is known about the stops of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StopStudy {
+    /// The stop category, 0 or 1, along the motions and of the recorded stops.
+    pub category: u8,
+    /// The worst stop of each suite and joint.
+    pub stops: Vec<WorstStop>,
+    /// The table of ISO 10218-1, Annex B.
+    pub annex_b: Option<AnnexB>,
+    /// Recorded stops beside the proved ones.
+    pub recorded: Vec<RecordedStop>,
+}
+
+/// Encloses the stops from recorded motions, the stops of the table, and recorded stops. The error
+/// of the drives' torque lies in U of `sets`.
+///
+/// # Guarantee
+///
+/// Outer, as [`stops_along`], [`annex_b`] and [`recorded_stops`].
+///
+/// # Errors
+///
+/// As [`annex_b`] and [`recorded_stops`].
+pub fn stop_study(
+    problem: &Problem,
+    sets: &UncertaintySets,
+    question: &StopQuestion,
+) -> Result<StopStudy> {
+    let StopQuestion { brakes, category, every, table, recorded } = *question;
+    let robot = problem.robot();
+    let recorded = recorded.map(|source| recorded_stops(robot, brakes, category, source));
+    Ok(StopStudy {
+        category: category.number(),
+        recorded: recorded.transpose()?.unwrap_or_default(),
+        annex_b: table.then(|| annex_b(robot, brakes, &sets.input_set)).transpose()?,
+        stops: stops_along(problem, brakes, category, every),
+    })
+}
+
+impl StopStudy {
+    /// Returns whether a standstill is proved from each sample.
+    #[must_use]
+    pub fn is_proved(&self) -> bool {
+        self.stops.iter().all(|worst| worst.proved == worst.samples && worst.samples > 0)
+    }
+
+    /// Returns the recorded stop that is furthest beyond the proved one; `None` if all are within.
+    #[must_use]
+    pub fn outside(&self) -> Option<&RecordedStop> {
+        let beyond = |stop: &RecordedStop| {
+            let [low, high] = stop.proved_way;
+            (low - stop.way).max(stop.way - high)
+        };
+        let outside = self.recorded.iter().filter(|stop| !stop.is_within);
+        outside.max_by(|a, b| beyond(a).total_cmp(&beyond(b)))
+    }
+}

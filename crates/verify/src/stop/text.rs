@@ -1,0 +1,170 @@
+//! Stops as text.
+
+use reachtube_conform::result::Table;
+use reachtube_scalar::number::{at_least, significant};
+
+use crate::stop::along::WorstStop;
+use crate::stop::annex_b::AnnexRow;
+use crate::stop::recorded::RecordedStop;
+use crate::stop::study::StopStudy;
+
+impl StopStudy {
+    /// Returns the answer as text: the verdict, then a table of the motions, the table of ISO
+    /// 10218-1 and the recorded stops; ways are in `unit`.
+    #[must_use]
+    pub fn text(&self, unit: &str) -> String {
+        let mut parts = vec![self.verdict(unit)];
+        parts.extend(self.skipped());
+        if !self.stops.is_empty() {
+            parts.push(self.motions(unit).to_string());
+        }
+        if let Some(table) = &self.annex_b {
+            let is_full = |row: &&AnnexRow| row.extension == 1.0 && row.load == table.full_load();
+            let full: Vec<AnnexRow> = table.rows.iter().filter(is_full).cloned().collect();
+            if !full.is_empty() {
+                parts.push(annex_table(&full, unit).to_string());
+            }
+            parts.extend(table.notes.iter().cloned());
+        }
+        if !self.recorded.is_empty() {
+            parts.push(recorded_table(&self.recorded, unit).to_string());
+        }
+        let parts: Vec<&str> = parts.iter().map(|part| part.trim_end()).collect();
+        parts.join("\n\n") + "\n"
+    }
+
+    /// Returns the verdict as a sentence.
+    #[must_use]
+    pub fn verdict(&self, unit: &str) -> String {
+        if let Some(outside) = self.outside() {
+            return beyond(outside, unit);
+        }
+        let suites: Vec<&WorstStop> = self.of_suites().collect();
+        let samples: usize = suites.iter().map(|worst| worst.samples).sum();
+        let open = samples - suites.iter().map(|worst| worst.proved).sum::<usize>();
+        if samples == 0 {
+            return "not proved: no sample has a stop that could be followed; give longer motions, \
+                    or a greater deceleration"
+                .into();
+        }
+        if open == 0 {
+            return format!(
+                "stands: from each of {samples} samples every joint comes to a standstill"
+            );
+        }
+        format!(
+            "not proved: from {open} of {samples} samples no standstill is proved; the brakes may \
+             be too weak for the load, or the recorded states too far apart"
+        )
+    }
+
+    /// Returns one of the worst stops of each suite, whose numbers of samples are the suite's.
+    fn of_suites(&self) -> impl Iterator<Item = &WorstStop> {
+        let first = self.stops.first().map(|worst| &worst.joint);
+        self.stops.iter().filter(move |worst| Some(&worst.joint) == first)
+    }
+
+    /// Returns how many samples were left out, as a sentence.
+    fn skipped(&self) -> Option<String> {
+        let count: usize = self.of_suites().map(|worst| worst.skipped).sum();
+        let noun = if count == 1 { "sample is" } else { "samples are" };
+        (count > 0).then(|| {
+            format!(
+                "{count} {noun} left out, since the deceleration from there would lead beyond the \
+                 end of the recording."
+            )
+        })
+    }
+
+    /// Returns the table of the motions.
+    #[must_use]
+    pub fn motions(&self, unit: &str) -> Table {
+        let way = format!("greatest way [{unit}]");
+        let header = ["suite", "joint", &way, "from [s]", "latest standstill [s]", "from [s]"];
+        let row = |worst: &WorstStop| {
+            vec![
+                worst.suite.clone(),
+                worst.joint.clone(),
+                bound(worst.way),
+                format!("{:.3}", worst.way_from),
+                bound(worst.time),
+                format!("{:.3}", worst.time_from),
+            ]
+        };
+        Table::new(header, self.stops.iter().map(row).collect())
+    }
+}
+
+/// Returns the rows of ISO 10218-1 as a table.
+#[must_use]
+pub fn annex_table(rows: &[AnnexRow], unit: &str) -> Table {
+    let distance = format!("distance [{unit}]");
+    let header = ["joint", "category", "speed", "extension", "load", &distance, "time [s]"];
+    let row = |row: &AnnexRow| {
+        let percent = |part: f64| format!("{:.0} %", 100.0 * part);
+        vec![
+            row.joint.clone(),
+            row.category.to_string(),
+            percent(row.speed),
+            percent(row.extension),
+            percent(row.load),
+            bound(row.way),
+            bound(row.time),
+        ]
+    };
+    let title = "ISO 10218-1, Annex B: proved stopping distances and times".to_string();
+    Table { title, ..Table::new(header, rows.iter().map(row).collect()) }
+}
+
+/// Returns recorded stops beside the proved ones as a table.
+#[must_use]
+pub fn recorded_table(stops: &[RecordedStop], unit: &str) -> Table {
+    let [measured, proved] = ["measured", "proved at most"].map(|name| format!("{name} [{unit}]"));
+    let header =
+        ["recording", "joint", &measured, &proved, "measured [s]", "proved at most [s]", "within"];
+    let row = |stop: &RecordedStop| {
+        let [low, high] = stop.proved_way;
+        let toward = if stop.way < 0.0 { -low } else { high };
+        vec![
+            stop.recording.clone(),
+            stop.joint.clone(),
+            significant(stop.way.abs(), 4),
+            bound(toward),
+            stop.time.map_or("moves on".into(), |time| format!("{time:.3}")),
+            bound(stop.proved_time),
+            if stop.is_within { "yes" } else { "no" }.into(),
+        ]
+    };
+    let title = "recorded stops, measured and proved from their first states".into();
+    Table { title, ..Table::new(header, stops.iter().map(row).collect()) }
+}
+
+/// Returns a recorded stop that is not within the proved one, as a sentence.
+fn beyond(stop: &RecordedStop, unit: &str) -> String {
+    let RecordedStop { recording, joint, .. } = stop;
+    let Some(time) = stop.time else {
+        return format!(
+            "not covered: {recording}: {joint} moves until the recording ends; record each stop \
+             to its standstill"
+        );
+    };
+    if stop.proved_time.is_infinite() {
+        return format!(
+            "not proved: {recording}: no standstill is proved from its first state; the brakes may \
+             be too weak for the load"
+        );
+    }
+    format!(
+        "not covered: {recording}: {joint} moves {} {unit} in {time:.3} s, but {} to {} {unit} \
+         in {} s are proved; the brakes may be weaker or slower than their file has it, or the \
+         recording may not begin with the stop",
+        significant(stop.way, 4),
+        significant(stop.proved_way[0], 4),
+        significant(stop.proved_way[1], 4),
+        bound(stop.proved_time)
+    )
+}
+
+fn bound(value: f64) -> String {
+    if value.is_finite() { at_least(value) } else { "none".into() }
+}
