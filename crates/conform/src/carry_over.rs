@@ -18,8 +18,8 @@ use crate::progress::Progress;
 /// The robot of the problem, and the inputs that were computed with it, must not have seen the
 /// motion either: identify the robot without it first. The comparison is a description, computed in
 /// floating point. It bounds no probability. Returns the factor of `allowance` too, radii of X0 and
-/// U, 3n, that encloses the motion once it is added to these sets; `None` if no factor does, and for
-/// a notion that asks points.
+/// U, 3n, that encloses the motion once it is added to these sets; `None` if no factor does, and
+/// for a notion that asks points.
 ///
 /// # Errors
 ///

@@ -102,7 +102,7 @@ fn carries_over(as_stated: &[Misses], tried: &[Tried]) -> bool {
         Some(&best.misses[left_out])
     };
     let misses: Option<Vec<&Misses>> = (0..as_stated.len()).map(left_out).collect();
-    let least = misses.and_then(|misses| part(misses));
+    let least = misses.and_then(part);
     part(as_stated).zip(least).is_some_and(|(rest, least)| gains(rest, least))
 }
 

@@ -12,11 +12,11 @@ use reachtube_conform::claim::Certificate;
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::{Centre, InitialLimit, States};
 use reachtube_conform::{
-    Conformance, Error, Keep, Model, Notion, Problem, Settings, Setup, Silent, Tube,
-    UncertaintySets, check, conform, reach,
+    Conformance, Error, Model, Notion, Problem, Settings, Setup, Tube, UncertaintySets, check,
+    reach,
 };
 use reachtube_reach::{Disturbance, Hyperrectangle, LinearSystem};
-use reachtube_recordings::{DataSet, Torque};
+use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
 fn settings(notion: Notion) -> Settings {
@@ -303,13 +303,8 @@ fn an_initial_set_that_takes_over_is_warned_of_and_can_be_limited() {
 }
 
 #[test]
-fn what_is_not_built_is_refused() {
+fn a_model_of_the_hull_has_no_certificate_of_points() {
     let folder = recorded(&grid(0.01, 20), 3);
-    let data = || Box::new(DataSet::open(folder.path()).unwrap());
-    let calibrated = Settings { calibrate: vec!["b".into()], ..settings(Notion::PhasePlane) };
-    let setup = Setup::new(two_joints(), calibrated).unwrap();
-    let problem = Problem::read(setup, data(), &[], Keep::Needed, &Silent).unwrap();
-    assert!(matches!(conform(&problem, &Silent, None), Err(Error::Calibration(_))));
     let (problem, found) = found(folder.path(), &settings(Notion::Hull));
     let certificate = Certificate::new(&problem, &Model::new(&problem, &found));
     assert!(matches!(certificate, Err(Error::NotPoints)));

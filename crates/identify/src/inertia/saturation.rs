@@ -21,8 +21,9 @@ const STRETCHES: usize = 8;
 const SPEEDS: usize = 12;
 
 /// Range of the speeds that are tried, in parts of the highest recorded speed. The low-pass blurs
-/// the step of dry friction, which looks like friction that saturates at a lower speed.
-const RANGE: [f64; 2] = [0.15, 1.0];
+/// the step of dry friction, which looks like friction that saturates at a lower speed. Friction
+/// with a higher one does not level off within the recordings.
+const RANGE: [f64; 2] = [0.15, 0.5];
 
 /// Rows with residuals beyond this many robust standard deviations are not used.
 const OUTLIER: f64 = 4.0;

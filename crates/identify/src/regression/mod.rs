@@ -5,7 +5,6 @@
 //! rows do not determine. Residuals give the weights of a robust fit and the number of independent
 //! samples.
 
-mod householder;
 pub(crate) mod residuals;
 pub(crate) mod singular;
 pub(crate) mod solution;

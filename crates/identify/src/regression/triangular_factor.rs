@@ -1,12 +1,8 @@
-use crate::regression::householder::triangular;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Number of rows that are factored at once.
 const CHUNK: usize = 1024;
-
-/// Number of rows that become columns at once: a line of the cache.
-const TRANSPOSED: usize = 8;
 
 /// The triangular factor of any number of rows [a, y], which is all that least squares needs.
 ///
@@ -41,18 +37,11 @@ impl TriangularFactor {
     ) -> Self {
         let width = columns + 1;
         let part = |part: &[usize]| {
-            let mut matrix = DMatrix::zeros(part.len(), width);
-            let mut rows = vec![0.0; TRANSPOSED * width];
-            for (block, indices) in part.chunks(TRANSPOSED).enumerate() {
-                rows.fill(0.0);
-                let written = indices.iter().zip(rows.chunks_exact_mut(width));
-                written.for_each(|(index, row)| write(*index, row));
-                for (j, column) in matrix.as_mut_slice().chunks_exact_mut(part.len()).enumerate() {
-                    let column = column[block * TRANSPOSED..].iter_mut();
-                    column.zip(rows[j..].iter().step_by(width)).for_each(|(to, from)| *to = *from);
-                }
-            }
-            triangular(matrix)
+            let mut rows = vec![0.0; part.len() * width];
+            part.iter()
+                .zip(rows.chunks_exact_mut(width))
+                .for_each(|(index, row)| write(*index, row));
+            factor(DMatrix::from_row_slice(part.len(), width, &rows))
         };
         let parts: Vec<_> = indices.par_chunks(CHUNK).map(part).collect();
         Self::from_parts(parts, width)
@@ -66,7 +55,7 @@ impl TriangularFactor {
     }
 
     fn from_parts(parts: Vec<DMatrix<f64>>, width: usize) -> Self {
-        let stack = parts.into_iter().reduce(|above, below| triangular(stacked(&above, &below)));
+        let stack = parts.into_iter().reduce(|above, below| factor(stacked(&above, &below)));
         let mut whole = DMatrix::zeros(width, width);
         if let Some(stack) = stack {
             whole.rows_mut(0, stack.nrows()).copy_from(&stack);
@@ -100,7 +89,7 @@ impl TriangularFactor {
         rows.view_mut((0, 0), (p, k)).copy_from(&(&self.r * map));
         rows.view_mut((0, k), (p, 1)).column_mut(0).copy_from(&self.z);
         rows[(p, k)] = self.residual;
-        Self::from_parts(vec![triangular(rows)], k + 1)
+        Self::from_parts(vec![factor(rows)], k + 1)
     }
 
     /// Returns the sum of squares ‖A x - y‖².
@@ -108,6 +97,11 @@ impl TriangularFactor {
     pub(crate) fn sum_of_squares(&self, x: &DVector<f64>) -> f64 {
         (&self.r * x - &self.z).norm_squared() + self.residual * self.residual
     }
+}
+
+/// Returns the triangular factor of a QR decomposition.
+fn factor(rows: DMatrix<f64>) -> DMatrix<f64> {
+    rows.qr().unpack_r()
 }
 
 fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {

@@ -76,9 +76,9 @@ pub enum ExportError {
     Shield {
         /// The file, line and key, or the robot and joint.
         place: String,
-        /// What is wrong.
+        /// The problem.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
     /// A reachable set could not be followed to the end of its motion.

@@ -98,7 +98,7 @@ fn the_shields_formulas_put_each_link_where_ours_do() {
             let point = |p: &[f64]| (frame * Vector4::new(p[0], p[1], p[2], 1.0)).xyz();
             let capsule = &enclosures[7 * j..7 * j + 7];
             let ends = [point(&capsule[..3]), point(&capsule[3..6])];
-            // Of several capsules of a link, the shield's one contains each end with its radius.
+            // The shield's one capsule contains each end with its radius.
             for own in all.as_slice().iter().filter(|own| own.joint == j) {
                 for end in [own.from, own.to] {
                     let end = link.rotation * Vector3::from(end) + link.translation;

@@ -126,8 +126,8 @@ fn laws_that_cannot_be_are_refused_with_joint_and_remedy() {
     let place = "arm.toml:11: joint `hinge`: ";
     for (laws, problem) in [
         (
-            "stribeck = { excess = -1.0, speed = 0.1 }",
-            "stribeck: with excess = -1 N m, friction drives near standstill",
+            "stribeck = { excess = -4.0, speed = 0.1 }",
+            "stribeck: with excess = -4 N m, friction drives near standstill",
         ),
         ("stribeck = { excess = 1.0, speed = 0.0 }", "stribeck: speed = 0 rad/s is not positive"),
         ("stribeck = { excess = nan, speed = 0.1 }", "friction contains NaN"),

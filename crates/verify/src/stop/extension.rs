@@ -89,8 +89,8 @@ mod tests {
         let robot = Robot::lwa4p();
         let (q, far) = stretched(&robot, 0, 1.0, [0.0; 3]);
         let (bent, near) = stretched(&robot, 0, 0.33, [0.0; 3]);
-        // Upper arm 0.35 m, lower arm 0.305 m, hand 0.08 m.
-        assert!((0.65..0.74).contains(&far), "{far} {q:?}");
+        // Upper arm, lower arm and hand lie on a line.
+        assert!((far - (0.35 + 0.3012 + 0.1548)).abs() < 1e-6, "{far} {q:?}");
         assert!((near - 0.33 * far).abs() < 1e-3, "{near} {far} {bent:?}");
         // The second joint bears the most with the arm level.
         let (q, _) = stretched(&robot, 1, 1.0, [0.0; 3]);

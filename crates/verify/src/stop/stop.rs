@@ -131,7 +131,7 @@ pub fn stop_1(
     let side = |(centre, radius): (&f64, &f64)| Interval::centred(*centre, *radius);
     let error: Vec<Interval> = input_set.centre.iter().zip(&input_set.radius).map(side).collect();
     let n = robot.joint_count();
-    assert!(error.len() == n && deceleration.torques().len() % n == 0, "of another robot");
+    assert!(error.len() == n && deceleration.torques().len().is_multiple_of(n), "of another robot");
     // The delay of the brakes counts from the end of the deceleration.
     let after = deceleration.duration();
     let [earliest, latest] = brakes.delay;

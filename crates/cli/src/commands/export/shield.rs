@@ -8,7 +8,7 @@ use reachtube::number::at_least;
 use reachtube::write;
 use serde_json::{Value, json};
 
-use super::{Arguments, open, write_all};
+use super::arguments::{Arguments, open, write_all};
 use crate::commands::verify::capsules;
 use crate::error::Result;
 use crate::outcome::Outcome;

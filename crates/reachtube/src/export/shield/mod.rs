@@ -1,7 +1,7 @@
 //! The files of the safety shield SaRA: how far its links may be from where it believes them.
 //!
-//! The shield grows each link's capsule by one `secure_radius` for all that its model of the robot
-//! leaves out. [`Shield::new`] proves that number from reachable sets.
+//! The shield grows each link's capsule by one `secure_radius` for the errors of its model of the
+//! robot. [`Shield::new`] proves that number from reachable sets.
 
 mod file;
 mod frames;
@@ -62,13 +62,13 @@ enum Links<'a> {
     /// As this robot and these capsules have them: the file is written whole.
     Own(&'a Robot, &'a Capsules),
     /// As the shield's own file has them.
-    File(&'a ShieldFile, LinkFile),
+    File(&'a ShieldFile, Box<LinkFile>),
 }
 
 impl Shield {
     /// Proves the secure radius over reachable sets and writes the shield's files.
     ///
-    /// Of `updates`, a file with `enclosures` gets another `secure_radius`, which is proved for the
+    /// A file of `updates` with `enclosures` gets another `secure_radius`, which is proved for the
     /// frames and capsules of that file; without one, the robot's file is written whole with
     /// `capsules`. A file with `a_max_allowed` gets limits that the motions reach.
     ///
@@ -117,7 +117,7 @@ impl<'a> Links<'a> {
         updates: &'a [ShieldFile],
     ) -> Result<Self, ExportError> {
         match (updates.iter().find(|file| is_of_links(file)), capsules) {
-            (Some(file), _) => Ok(Self::File(file, LinkFile::read(file, robot)?)),
+            (Some(file), _) => Ok(Self::File(file, Box::new(LinkFile::read(file, robot)?))),
             (None, Some(capsules)) => Ok(Self::Own(robot, capsules)),
             (None, None) => Err(ExportError::Shield {
                 place: robot.name().into(),
@@ -188,9 +188,9 @@ fn about(robot: &Robot, radius: f64, margins: &[LinkMargin], reached: &[SuiteRea
     let lines = [
         format!("{MARK} ({TOOL}): secure_radius of {}.", harmless(robot.name())),
         format!(
-            "Proved: grown by {} m, the capsules on the nominal motion contain those on every \
-             motion of the model, for up to {:.4} s of {}. How far the controller lets the arm \
-             leave its plan is not part of it.",
+            "Proved: grown by {} m, the capsules on the nominal motion contain the capsules on \
+             every motion of the model, for up to {:.4} s of {}. How far the controller lets the \
+             arm leave its plan is not part of it.",
             number(radius),
             ends.fold(0.0, f64::max),
             names.join(", ")
