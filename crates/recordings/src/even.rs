@@ -85,7 +85,8 @@ impl EvenSamples {
         (self.origin, self.count) = (None, 0);
     }
 
-    /// Takes a sample. The ones that it completes follow from [`next`](Self::next).
+    /// Takes a sample. Those that it completes follow from [`next`](Self::next), which must be
+    /// called until there is none.
     ///
     /// # Errors
     ///
@@ -107,7 +108,7 @@ impl EvenSamples {
                 return Err(SampleError::NotFinite { name, value: part[joint] });
             }
         }
-        let previous = self.last.time;
+        let previous = self.new.time;
         if self.origin.is_some() && time <= previous {
             return Err(SampleError::Order { time, previous });
         }
@@ -115,6 +116,7 @@ impl EvenSamples {
         if self.origin.is_some() && time - previous > longest * (1.0 + 1e-9) + SAME {
             return Err(SampleError::Gap { time, previous, longest });
         }
+        std::mem::swap(&mut self.last, &mut self.new);
         self.new.time = time;
         let parts = self.new.values.chunks_exact_mut(n.max(1)).zip(parts);
         parts.for_each(|(own, part)| own.copy_from_slice(part));
@@ -132,7 +134,6 @@ impl EvenSamples {
         let ahead = self.new.time - due;
         let is_same = ahead.abs() <= SAME + 2.0 * f64::EPSILON * due.abs();
         if !is_same && ahead < 0.0 {
-            self.last.copy(&self.new);
             return None;
         }
         self.count += 1;

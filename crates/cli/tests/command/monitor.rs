@@ -38,7 +38,9 @@ fn events(run: &Run) -> Vec<Value> {
 fn a_healthy_motion_stays_and_a_fault_is_reported_when_it_happens() {
     let lab = lab();
     let healthy = lab.read("data/A_2.csv");
-    let run = monitor(&lab, "--horizon 0.1", &healthy).exits(0).notes("windows of 0.1 s");
+    let run = monitor(&lab, "--horizon 0.1", &healthy)
+        .exits(0)
+        .notes("windows of 0.1000 s, a new one every 0.0300 s");
     assert!(run.stdout.starts_with("never left: 51 samples"), "{}", run.stdout);
     // From sample 30 on, joint 2 is elsewhere.
     lab.edit("data/A_2.csv", |lines| {

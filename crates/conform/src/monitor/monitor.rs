@@ -232,6 +232,13 @@ impl Monitor {
         self.delayed.as_ref().map_or(0.0, Delayed::delay)
     }
 
+    /// Returns the time from the beginning of one window to the beginning of the next, s.
+    #[must_use]
+    pub fn every(&self) -> f64 {
+        let times = self.judge.sets.grid.times.times();
+        times.get(self.judge.every as usize).copied().unwrap_or(0.0)
+    }
+
     /// Returns the length of a window, s.
     #[must_use]
     pub fn horizon(&self) -> f64 {

@@ -335,10 +335,11 @@ mod tests {
                 let mut live = LiveLog::new(&robot, &preparation, velocity, STEP, STEP).unwrap();
                 // The recording was cut by 2.5 periods at its ends.
                 let cut = (run.len() - log.len()) / 2;
-                let (mut count, mut error) = (0, 0.0f64);
+                let (live_delay, mut count, mut error) = (live.delay(), 0, 0.0f64);
                 for k in 0..run.len() {
                     live.take(run.times[k], [run.q(k), run.qd(k), run.torque(k)]).unwrap();
                     let Some(sample) = live.next() else { continue };
+                    assert!((sample.time - run.times[k] + live_delay).abs() < 1e-9);
                     let at = (sample.time / STEP).round() as usize;
                     assert!((sample.time - at as f64 * STEP).abs() < 1e-9);
                     let Some(row) = at.checked_sub(cut).filter(|row| *row < log.len()) else {

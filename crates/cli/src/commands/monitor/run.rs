@@ -167,9 +167,9 @@ impl Watch<'_> {
         };
         let monitor = LiveMonitor::new(self.model, schedule, velocity)?;
         output::note(&format!(
-            "samples every {step} s, windows of {} s, a new one every {:.4} s",
+            "samples every {step} s, windows of {:.4} s, a new one every {:.4} s",
             monitor.found().horizon(),
-            schedule.every
+            monitor.found().every()
         ));
         if monitor.delay() > 0.0 {
             output::note(&format!(
