@@ -85,8 +85,8 @@ impl EvenSamples {
         (self.origin, self.count) = (None, 0);
     }
 
-    /// Takes a sample. Those that it completes follow from [`next`](Self::next), which must be
-    /// called until there is none.
+    /// Takes a sample. The even samples that it completes follow from [`next`](Self::next), which
+    /// must be called until there is none.
     ///
     /// # Errors
     ///
