@@ -3,7 +3,7 @@
 Load a robot (`Robot`), and make a model of its logs in one call (`model`). Or open recordings
 (`Recordings`), filter and cut them (`prepare`), find the smallest uncertainty sets for which a
 model encloses them (`conform`), check other recordings (`check`), compute reachable sets (`reach`),
-and draw a page (`report`). `identify` makes the robot from recordings, `excite` the
+draw a page (`report`), and watch a running robot (`monitor`). `identify` makes the robot from recordings, `excite` the
 motions for it, `abstract` models of any order, and `flowpipe` reachable sets of your own system.
 """
 
@@ -17,6 +17,7 @@ from ._findings import Finding, Report
 from ._flowpipe import Flowpipe, flowpipe
 from ._identify import Identification, identify
 from ._model import Check, Model
+from ._monitor import Leave, Monitor, monitor
 from ._polynomial import Polynomial, cos, sin, variables
 from ._prepare import prepare
 from ._reach import ReachableSet, reach, report
@@ -49,8 +50,10 @@ __all__ = [
     "HorizonWidths",
     "Identification",
     "JointRow",
+    "Leave",
     "Model",
     "ModelFileError",
+    "Monitor",
     "Polynomial",
     "ReachableSet",
     "ReachtubeError",
@@ -71,6 +74,7 @@ __all__ = [
     "identify",
     "io",
     "model",
+    "monitor",
     "prepare",
     "reach",
     "report",

@@ -1,5 +1,5 @@
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeAlias, final
+from typing import Literal, TypeAlias, final
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ __all__ = [
     "Fleet",
     "FleetProblem",
     "Fold",
+    "Monitor",
     "PartPoints",
     "Robot",
     "Run",
@@ -58,6 +59,30 @@ class Robot:
     def friction(self, q: _Array, qd: _Array) -> tuple[_Array, _Array]: ...
     def regressor(self, q: _Array, qd: _Array, qdd: _Array) -> _Array: ...
     def parameters(self) -> tuple[list[str], list[float]]: ...
+
+_Left: TypeAlias = tuple[
+    float, float, int, str, Literal["upper", "lower"], float, float, float, bool, bool
+]
+
+@final
+class Monitor:
+    def __new__(
+        cls,
+        model: str,
+        step: float,
+        horizon: float | None,
+        every: float | None,
+        max_gap: float | None,
+        differentiate: bool,
+    ) -> Monitor: ...
+    def push(self, times: _Array, q: _Array, qd: _Array, tau: _Array) -> list[_Left]: ...
+    def finish(self) -> list[_Left]: ...
+    def totals(self) -> tuple[int, int, int, int, int]: ...
+    def used(self) -> _Array: ...
+    def largest_used(self) -> _Array: ...
+    def drift(self) -> _Array: ...
+    def delay(self) -> float: ...
+    def horizon(self) -> float: ...
 
 @final
 class Run:

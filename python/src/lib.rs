@@ -15,6 +15,7 @@ mod logs;
 mod logs_on_disk;
 mod manifest;
 mod model;
+mod monitor;
 mod points;
 mod pool;
 mod prepare;
@@ -44,6 +45,8 @@ mod _reachtube {
     use crate::logs::read_log;
     #[pymodule_export]
     use crate::model::{cut, model, prepared};
+    #[pymodule_export]
+    use crate::monitor::NativeMonitor;
     #[pymodule_export]
     use crate::points::{NativeFleetProblem, NativePartPoints};
     #[pymodule_export]

@@ -6,7 +6,7 @@ use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
     r#abstract, campaign, check, completions, conform, convert, demo, excite, export, identify,
-    inspect, man, model, prepare, reach, report, stop, verify,
+    inspect, man, model, monitor, prepare, reach, report, stop, verify,
 };
 use crate::error::Result;
 use crate::global::GlobalOptions;
@@ -56,6 +56,8 @@ Examples:
       decide whether the links stay clear of obstacles
   reachtube stop --model model.json --data recordings --brakes brakes.toml
       enclose how far the robot moves after a stop
+  robot-driver | reachtube monitor --model model.json
+      report at once when a motion leaves the sets
   reachtube reproduce table1
       repeat the paper's simulations
 
@@ -77,6 +79,7 @@ pub(crate) enum Command {
     Reach(reach::Arguments),
     Verify(verify::Arguments),
     Stop(stop::Arguments),
+    Monitor(monitor::Arguments),
     Excite(excite::Arguments),
     Convert(convert::Arguments),
     Demo(demo::Arguments),
@@ -105,6 +108,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Outcome> {
         Command::Reach(args) => reach::run(args, json),
         Command::Verify(args) => verify::run(args, json),
         Command::Stop(args) => stop::run(args, json),
+        Command::Monitor(args) => monitor::run(args, json),
         Command::Excite(args) => excite::run(args, json),
         Command::Convert(args) => convert::run(args, json),
         Command::Demo(args) => demo::run(args, json),

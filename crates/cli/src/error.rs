@@ -200,6 +200,14 @@ pub(crate) enum Error {
         /// The tool.
         tool: String,
     },
+    /// A sample that `monitor` cannot use.
+    #[error("standard input:{line}: {problem}")]
+    Sample {
+        /// The line, from 1.
+        line: u64,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
     /// A log could not be read or cut.
     #[error(transparent)]
     Log(#[from] reachtube_logs::Error),
@@ -233,7 +241,7 @@ impl Error {
         match self {
             Self::Usage(_) | Self::Renamed { .. } => "usage",
             Self::Output(_) => "file",
-            Self::Refused { .. } => "recordings",
+            Self::Refused { .. } | Self::Sample { .. } => "recordings",
             Self::Pipeline(error) => match **error {
                 PipelineError::NoSets { .. } => "conform",
                 _ => "recordings",

@@ -21,7 +21,7 @@ const FEW_EXAMPLES: usize = 2;
 const GROUPS: &[(&str, &[&str])] = &[
     (
         "From logs to a model, and to safety",
-        &["model", "check", "inspect", "export", "report", "verify", "stop"],
+        &["model", "check", "inspect", "export", "report", "verify", "stop", "monitor"],
     ),
     (
         "The steps of `model`, one by one",

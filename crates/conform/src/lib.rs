@@ -26,6 +26,7 @@ pub mod fit;
 pub mod fleet;
 mod job;
 pub mod model;
+pub mod monitor;
 pub mod next_motion;
 mod nominal;
 pub mod plausibility;

@@ -10,7 +10,7 @@ mod upward;
 pub use error::ReachError;
 pub use grid::TimeGrid;
 pub use linear::{
-    Disturbance, LinearSystem, Propagation, PropagationStep, ReachSets, SampleGenerators,
+    Disturbance, LinearSystem, Propagation, PropagationStep, ReachSets, SampleGenerators, Solution,
     StepBounds, StepRadii, Trajectory, step,
 };
 pub use polynomial::{

@@ -5,6 +5,7 @@ use crate::robot::Robot;
 use crate::workspace::Workspace;
 use reachtube_ode::VectorField;
 use reachtube_scalar::Lanewise;
+use std::borrow::Cow;
 
 /// The torque that drives a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +47,7 @@ pub enum DrivenBy {
 /// ```
 #[derive(Clone, Debug)]
 pub struct RobotField<'a, S> {
-    robot: &'a Robot,
+    robot: Cow<'a, Robot>,
     driven_by: DrivenBy,
     /// Speed \[rad/s; m/s\] below which Coulomb friction is linear in q̇; 0 for none.
     regularisation_speed: f64,
@@ -64,7 +65,7 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
         let zeros = || vec![S::zero(); robot.joint_count()];
         let (ws, regularisation_speed, articulated) = (Workspace::new(robot), 0.0, false);
         Self {
-            robot,
+            robot: Cow::Borrowed(robot),
             driven_by,
             regularisation_speed,
             articulated,
@@ -73,6 +74,15 @@ impl<'a, S: Lanewise> RobotField<'a, S> {
             cos: zeros(),
             torque: zeros(),
         }
+    }
+
+    /// Takes a copy of the robot, so that the equation can be kept beside it.
+    #[must_use]
+    pub fn into_owned(self) -> RobotField<'static, S> {
+        let Self { robot, driven_by, regularisation_speed, articulated, ws, sin, cos, torque } =
+            self;
+        let robot = Cow::Owned(robot.into_owned());
+        RobotField { robot, driven_by, regularisation_speed, articulated, ws, sin, cos, torque }
     }
 
     /// Uses the articulated-body algorithm [`Robot::aba`] in place of [`Robot::forward_dynamics`].

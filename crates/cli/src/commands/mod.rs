@@ -13,6 +13,7 @@ pub(crate) mod identify;
 pub(crate) mod inspect;
 pub(crate) mod man;
 pub(crate) mod model;
+pub(crate) mod monitor;
 pub(crate) mod prepare;
 pub(crate) mod reach;
 pub(crate) mod report;

@@ -12,6 +12,7 @@ mod index;
 mod inspect;
 mod locks;
 mod model;
+mod monitor;
 mod nonlinear;
 mod notions;
 mod options;

@@ -66,9 +66,9 @@ fn the_first_screen_begins_with_the_commands_for_logs() {
     let listed = screen.lines().filter_map(|line| line.strip_prefix("  "));
     let words = listed.filter(|line| line.starts_with(|c: char| c.is_lowercase()));
     let names: Vec<&str> = words.map(|line| line.split(' ').next().unwrap()).collect();
-    let expected = "reachtube reachtube model check inspect export report verify stop identify \
-                    prepare conform abstract reach excite convert demo campaign reproduce robot \
-                    completions man";
+    let expected = "reachtube reachtube model check inspect export report verify stop monitor \
+                    identify prepare conform abstract reach excite convert demo campaign \
+                    reproduce robot completions man";
     assert_eq!(names.join(" "), expected);
     // Without a command, the same screen is an error.
     let bare = lab.run("").exits(2);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::stored::{grid, values};
 
 /// Accelerations are differences of velocities over at least this time to both sides, s.
-const SPAN: f64 = 0.02;
+pub(crate) const SPAN: f64 = 0.02;
 
 /// The sample times of a run and the input u along it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

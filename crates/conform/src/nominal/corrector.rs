@@ -1,5 +1,7 @@
 //! The correction of the input, evaluated at one state after another without allocation.
 
+use std::borrow::Cow;
+
 use reachtube_recordings::Torque;
 use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
@@ -11,10 +13,10 @@ use crate::error::Result;
 /// Evaluates a correction for one robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Corrector<'a> {
-    robot: &'a Robot,
-    correction: &'a InputCorrection,
+    robot: Cow<'a, Robot>,
+    correction: Cow<'a, InputCorrection>,
     /// The velocities of the expansion point, n.
-    origin: &'a [f64],
+    origin: Cow<'a, [f64]>,
     /// The logarithm of the run's place, in which the correction counts warmth.
     warmth: f64,
     /// The robot as warm as it is in this run, where its own friction changes.
@@ -50,9 +52,9 @@ impl<'a> Corrector<'a> {
         };
         let zeros = || vec![0.0; n];
         Ok(Self {
-            robot,
-            correction,
-            origin: &settings.expansion_point.qd,
+            robot: Cow::Borrowed(robot),
+            correction: Cow::Borrowed(correction),
+            origin: Cow::Borrowed(&settings.expansion_point.qd),
             warmth: (condition.place as f64).ln(),
             warm: condition.warm(robot),
             is_compensated: settings.torque == Torque::Compensated,
@@ -63,6 +65,26 @@ impl<'a> Corrector<'a> {
             cos: zeros(),
             torque: zeros(),
         })
+    }
+
+    /// Takes copies of what it borrows.
+    pub(crate) fn into_owned(self) -> Corrector<'static> {
+        let Self { warmth, warm, is_compensated, has_coulomb, unit_payload, .. } = self;
+        let Self { workspace, sin, cos, torque, .. } = self;
+        Corrector {
+            robot: Cow::Owned(self.robot.into_owned()),
+            correction: Cow::Owned(self.correction.into_owned()),
+            origin: Cow::Owned(self.origin.into_owned()),
+            warmth,
+            warm,
+            is_compensated,
+            has_coulomb,
+            unit_payload,
+            workspace,
+            sin,
+            cos,
+            torque,
+        }
     }
 
     /// Takes the correction at the state (q, q̇) off the input `u` (n, N m).
@@ -96,7 +118,7 @@ impl<'a> Corrector<'a> {
                 if let Some(warm) = self.warm.as_ref().filter(|_| changes_coulomb) {
                     let of =
                         |robot: &Robot| robot.joints()[j].friction.softened_dry_torque(load, qd);
-                    u[j] -= of(warm) - of(self.robot);
+                    u[j] -= of(warm) - of(&self.robot);
                 }
             }
         }

@@ -4,7 +4,7 @@ mod cases;
 pub(crate) mod corrector;
 pub(crate) mod input_error;
 pub(crate) mod motion;
-mod robot_equations;
+pub(crate) mod robot_equations;
 pub(crate) mod simulate;
 pub(crate) mod steps;
 pub(crate) mod transition;

@@ -8,7 +8,8 @@ use reachtube_robot::{DrivenBy, Robot, RobotField};
 use crate::error::{Error, Result};
 
 /// The robot's equations of motion (10) beside a linear model of it.
-pub(super) struct RobotEquations<'a> {
+#[derive(Debug)]
+pub(crate) struct RobotEquations<'a> {
     robot: RobotField<'a, f64>,
     /// The last n rows of A, for q̈, n x 2n.
     of_state: DMatrix<f64>,
@@ -30,7 +31,7 @@ impl<'a> RobotEquations<'a> {
     /// # Errors
     ///
     /// [`Error::Equations`] where an input of the model moves no joint.
-    pub(super) fn new(robot: &'a Robot, model: &LinearSystem) -> Result<Self> {
+    pub(crate) fn new(robot: &'a Robot, model: &LinearSystem) -> Result<Self> {
         let n = robot.joint_count();
         let of_input = model.b().rows(n, n).into_owned();
         Ok(Self {
@@ -44,9 +45,16 @@ impl<'a> RobotEquations<'a> {
         })
     }
 
+    /// Takes a copy of the robot.
+    pub(crate) fn into_owned(self) -> RobotEquations<'static> {
+        let Self { robot, of_state, drift, of_acceleration, rate, missing, input } = self;
+        let robot = robot.into_owned();
+        RobotEquations { robot, of_state, drift, of_acceleration, rate, missing, input }
+    }
+
     /// Replaces the robot's input `u` (n, N m) at the state `x` (2n) by the model's: the q̈ of the
     /// model then equals the robot's.
-    pub(super) fn replace(&mut self, x: &[f64], u: &mut [f64]) {
+    pub(crate) fn replace(&mut self, x: &[f64], u: &mut [f64]) {
         self.robot.rate(0.0, x, u, &mut self.rate);
         let (n, drift) = (u.len(), &self.drift);
         for (j, row) in self.of_state.row_iter().enumerate() {

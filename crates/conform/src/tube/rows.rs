@@ -91,6 +91,17 @@ impl<'a> RecordedBounds<'a> {
     }
 }
 
+/// Returns how far the highest and the lowest value of a row reach beyond a hull that is widened by
+/// the radius `noise` of V: above it and below it.
+///
+/// # Guarantee
+///
+/// Upper bounds, directed rounding.
+pub(crate) fn excesses(bounds: HullBounds, noise: f64, [highest, lowest]: [f64; 2]) -> [f64; 2] {
+    [(highest, bounds.upper), (-lowest, -bounds.lower)]
+        .map(|(value, reach)| sub_up(value, add_down(reach, noise)))
+}
+
 /// Compares each row of recorded values with a strand and hands it to `visit`. A row that
 /// [holds](Row::holds) is proved to be enclosed.
 ///
@@ -111,19 +122,13 @@ pub(crate) fn rows(
         for state in 0..checked {
             let noise = sets.noise_radius(state);
             let bounds = hull.bounds(sample, state);
-            let excess = |value: f64, reach: fn(HullBounds) -> f64| {
-                bounds.map_or(f64::INFINITY, |b| sub_up(value, add_down(reach(b), noise)))
-            };
-            let upper = Edge {
-                side: Side::Upper,
-                run: envelope.upper_run(sample, state),
-                excess: excess(envelope.upper(sample, state), |bounds| bounds.upper),
-            };
-            let lower = Edge {
-                side: Side::Lower,
-                run: envelope.lower_run(sample, state),
-                excess: excess(-envelope.lower(sample, state), |bounds| -bounds.lower),
-            };
+            let values = [envelope.upper(sample, state), envelope.lower(sample, state)];
+            let [above, below] =
+                bounds.map_or([f64::INFINITY; 2], |bounds| excesses(bounds, noise, values));
+            let upper =
+                Edge { side: Side::Upper, run: envelope.upper_run(sample, state), excess: above };
+            let lower =
+                Edge { side: Side::Lower, run: envelope.lower_run(sample, state), excess: below };
             let radius = bounds.map_or(f64::INFINITY, |bounds| bounds.radius) + noise;
             let edges = [upper, lower];
             visit(&Row { suite, strand, sample, time, state, radius, edges });

@@ -9,6 +9,7 @@ mod fold;
 mod friction;
 mod guarantees;
 mod model_file;
+mod monitor;
 mod next_motion;
 mod nonlinear;
 mod notion;

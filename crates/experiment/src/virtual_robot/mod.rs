@@ -19,6 +19,8 @@ mod arm;
 mod controller;
 mod elementary;
 pub(crate) mod error;
+#[cfg(test)]
+mod fault_tests;
 mod friction;
 mod parameters;
 mod plant;

@@ -39,6 +39,20 @@ impl LowPass {
         })
     }
 
+    /// Returns the filter as weights of the samples around each, those after it included, over
+    /// `periods` periods of the cut-off to both sides. They are symmetric and their sum is 1.
+    pub(crate) fn weights(&self, periods: f64) -> Vec<f64> {
+        let half = (periods * self.period as f64).ceil() as usize;
+        let middle = half + 3 * self.period + 1;
+        let mut weights = vec![0.0; 2 * middle + 1];
+        weights[middle] = 1.0;
+        self.zero_phase(&mut weights);
+        let mut weights = weights[middle - half..=middle + half].to_vec();
+        let sum: f64 = weights.iter().sum();
+        weights.iter_mut().for_each(|weight| *weight /= sum);
+        weights
+    }
+
     /// Filters evenly spaced samples in place, forward and backward.
     pub(crate) fn zero_phase(&self, signal: &mut [f64]) {
         let Some(last) = signal.len().checked_sub(1) else { return };

@@ -12,6 +12,7 @@ pub(crate) mod cut_off;
 mod derivative;
 pub(crate) mod entry;
 mod lag;
+mod live;
 pub(crate) mod log;
 mod low_pass;
 mod motors;
@@ -32,6 +33,7 @@ mod windows;
 
 pub use cut_off::cut_off;
 pub use entry::LogEntry;
+pub use live::LiveLog;
 pub use log::PreparedLog;
 pub use noise::noise_left;
 pub use prepared::{Prepared, prepare, unfiltered};

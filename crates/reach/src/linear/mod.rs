@@ -17,7 +17,7 @@ pub use hulls::ReachSets;
 pub use input_gains::Disturbance;
 pub use propagation::Propagation;
 pub use sample_generators::SampleGenerators;
-pub use solution::Trajectory;
+pub use solution::{Solution, Trajectory};
 pub use step::{PropagationStep, step};
 pub use step_bounds::{StepBounds, StepRadii};
 pub use system::LinearSystem;

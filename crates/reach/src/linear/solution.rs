@@ -47,21 +47,59 @@ impl Propagation {
         let (n, m) = (self.system().states(), self.system().inputs());
         let rows = inputs.len().checked_div(m).unwrap_or(usize::MAX);
         let samples = rows.min(self.grid().len());
-        let mut mid: Vec<f64> = start.iter().map(|x| x.mid()).collect();
-        let mut error = SolutionError::new(start);
+        let mut solution = Solution::new(start);
         let mut states = Vec::with_capacity(samples * n);
-        let mut next = vec![Interval::ZERO; n];
         for k in 0..samples {
-            states.extend(
-                mid.iter().zip(&error.radius).map(|(&mid, &rad)| Interval::centred(mid, rad)),
-            );
+            states.extend((0..n).map(|i| solution.state(i)));
             if k + 1 < samples {
-                advance(self.step(k), &mid, &inputs[k * m..(k + 1) * m], &mut next);
-                error.advance(self, k, &next);
-                mid.iter_mut().zip(&next).for_each(|(mid, next)| *mid = next.mid());
+                solution.advance(self, k, &inputs[k * m..(k + 1) * m]);
             }
         }
         Trajectory { dimension: n, states }
+    }
+}
+
+/// An enclosed solution that advances from sample to sample, for an input that is known step by
+/// step. It does not allocate after it was made.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    mid: Vec<f64>,
+    error: SolutionError,
+    next: Vec<Interval>,
+}
+
+impl Solution {
+    /// Begins at the first sample, in a state of `start` (N).
+    pub fn new(start: &IntervalVector) -> Self {
+        let mid = start.iter().map(|x| x.mid()).collect();
+        let next = vec![Interval::ZERO; start.len()];
+        Self { mid, error: SolutionError::new(start), next }
+    }
+
+    /// Begins anew in one state (N).
+    ///
+    /// # Panics
+    ///
+    /// If the solution has another number of states.
+    pub fn restart(&mut self, state: &[f64]) {
+        self.mid.copy_from_slice(state);
+        self.error.clear();
+    }
+
+    /// Returns the value of state i.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, as [`Propagation::solve`].
+    pub fn state(&self, i: usize) -> Interval {
+        Interval::centred(self.mid[i], self.error.radius[i])
+    }
+
+    /// Advances from sample `k` of the grid to the next under the input `input` (m).
+    pub fn advance(&mut self, propagation: &Propagation, k: usize, input: &[f64]) {
+        advance(propagation.step(k), &self.mid, input, &mut self.next);
+        self.error.advance(propagation, k, &self.next);
+        self.mid.iter_mut().zip(&self.next).for_each(|(mid, next)| *mid = next.mid());
     }
 }
 
@@ -81,6 +119,7 @@ fn advance(step: &PropagationStep, x: &[f64], u: &[f64], next: &mut [Interval]) 
 
 /// Two bounds of the error of a floating-point solution, as for the exponential in
 /// [`MatrixPowers`](crate::linear::exponential::powers::Powers).
+#[derive(Debug, Clone)]
 struct SolutionError {
     /// Radius of the initial set.
     start: Vec<f64>,
@@ -99,17 +138,27 @@ impl SolutionError {
         Self { start: radius.clone(), defects: zero.clone(), carried: zero, radius }
     }
 
+    /// Returns to the first sample and an initial set of one state.
+    fn clear(&mut self) {
+        let Self { start, defects, carried, radius } = self;
+        [start, defects, carried, radius].into_iter().for_each(|bounds| bounds.fill(0.0));
+    }
+
     /// Advances the bounds to sample k + 1, where `next` encloses the step of the midpoint.
     fn advance(&mut self, propagation: &Propagation, k: usize, next: &[Interval]) {
-        let (phi, exponential) = (&propagation.step(k).phi, propagation.exponential(k + 1));
+        let (phi, bound) = (&propagation.step(k).phi, propagation.horizon_bound());
+        // From one state, the exponential multiplies zeros.
+        let is_point = self.start.iter().all(|radius| *radius == 0.0);
+        let exponential = (!is_point).then(|| propagation.exponential(k + 1));
         for (i, next) in next.iter().enumerate() {
             self.defects[i] = add_up(self.defects[i], next.rad());
             self.carried[i] =
                 add_up(dot_upward(phi.row(i).iter().map(|x| x.mag()), &self.radius), next.rad());
         }
         for i in 0..next.len() {
-            let start = dot_upward(exponential.row(i).iter().map(|x| x.mag()), &self.start);
-            let bound = propagation.horizon_bound();
+            let start = exponential.as_ref().map_or(0.0, |exponential| {
+                dot_upward(exponential.row(i).iter().map(|x| x.mag()), &self.start)
+            });
             let defects = dot_upward(bound.row(i).iter().copied(), &self.defects);
             self.radius[i] = self.carried[i].min(add_up(start, defects));
         }

@@ -33,7 +33,7 @@ impl Friction {
     /// At rest, friction balances that torque as far as it can. From [`NEAR_STANDSTILL`] on it is
     /// [`Friction::dry_torque`], and in between it passes from one to the other.
     #[must_use]
-    pub(crate) fn holding_torque(&self, load: f64, qd: f64, driving: f64) -> f64 {
+    pub fn holding_torque(&self, load: f64, qd: f64, driving: f64) -> f64 {
         let limit = |direction: f64| self.dry_torque(load, direction * f64::MIN_POSITIVE);
         let (one, other) = (limit(-1.0), limit(1.0));
         let held = driving.clamp(one.min(other), one.max(other));

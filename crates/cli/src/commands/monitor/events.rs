@@ -1,0 +1,136 @@
+//! What the monitor prints: events as they happen, and the summary.
+
+use std::fmt::Write;
+
+use reachtube::conform::data::Side;
+use reachtube::conform::monitor::{Leave, Monitor};
+use reachtube::recordings::{State, StateKind};
+use reachtube::robot::Robot;
+use serde_json::{Value, json};
+
+use crate::error::Result;
+use crate::output;
+use crate::table::table;
+
+/// Prints events and the summary, as text or as one JSON object per line.
+pub(super) struct Events {
+    json: bool,
+    names: Vec<String>,
+    /// The units of each state.
+    units: Vec<&'static str>,
+    /// The first event.
+    first: Option<String>,
+}
+
+impl Events {
+    pub(super) fn new(robot: &Robot, json: bool) -> Self {
+        let joints = robot.joints();
+        let units = [StateKind::Position, StateKind::Velocity];
+        let units = units.iter().flat_map(|kind| joints.iter().map(|joint| kind.unit(joint.kind)));
+        let names = joints.iter().map(|joint| joint.name.clone()).collect();
+        Self { json, names, units: units.collect(), first: None }
+    }
+
+    /// Prints a line for each window that is left for the first time, with its worst state.
+    pub(super) fn left(&mut self, leaves: &[Leave]) -> Result<()> {
+        for first in leaves.iter().filter(|leave| leave.first) {
+            let of_window = leaves.iter().filter(|leave| leave.window == first.window);
+            let part = |leave: &Leave| leave.excess / leave.radius;
+            let worst = of_window.max_by(|a, b| part(a).total_cmp(&part(b))).unwrap_or(first);
+            self.print(worst)?;
+        }
+        Ok(())
+    }
+
+    fn print(&mut self, leave: &Leave) -> Result<()> {
+        let n = self.names.len();
+        let (name, unit) = (&self.names[leave.joint - 1], self.units[leave.state.index(n)]);
+        let side = match leave.side {
+            Side::Upper => "above",
+            Side::Lower => "below",
+        };
+        let rounding = if leave.proved { "" } else { ", within rounding" };
+        let text = format!(
+            "{:.4} s: {name} left its set: {} is {:.2e} {unit} {side} it{rounding}, in the window \
+             from {:.4} s",
+            leave.time, leave.state, leave.excess, leave.window
+        );
+        self.first.get_or_insert_with(|| text.clone());
+        if self.json {
+            let mut event = serde_json::to_value(leave).expect("an event has string keys");
+            event["event"] = "left".into();
+            event["name"] = name.clone().into();
+            return line(&event);
+        }
+        output::print(&format!("{text}\n"))
+    }
+
+    /// Prints how much of the sets is used at a time, s.
+    pub(super) fn gauge(&self, time: f64, monitor: &Monitor) -> Result<()> {
+        if self.json {
+            return line(&json!({
+                "event": "gauge",
+                "time": time,
+                "used": monitor.used(),
+                "drift": monitor.drift(),
+            }));
+        }
+        let (state, used) = greatest(monitor.used());
+        let (drifting, drift) = greatest(monitor.drift());
+        let n = self.names.len();
+        output::print(&format!(
+            "{time:.4} s: {:.0} % of the set is used, in {}; the largest drift is {:.0} %, in {}\n",
+            100.0 * used,
+            State::from_index(state, n),
+            100.0 * drift,
+            State::from_index(drifting, n),
+        ))
+    }
+
+    /// Prints the summary.
+    pub(super) fn summary(&self, monitor: &Monitor, ended: &str) -> Result<()> {
+        let totals = monitor.totals();
+        if self.json {
+            return line(&json!({
+                "event": "summary",
+                "ended": ended,
+                "totals": totals,
+                "largest_used": monitor.largest_used(),
+                "drift": monitor.drift(),
+            }));
+        }
+        let mut text = match &self.first {
+            None => format!(
+                "never left: {} samples stayed in the sets of all windows, of which {} ended\n",
+                totals.samples, totals.windows
+            ),
+            Some(first) => format!(
+                "left: {} windows left their sets, {} ended; {} of {} rows are outside\nfirst: \
+                 {first}\n",
+                totals.left, totals.windows, totals.outside, totals.rows
+            ),
+        };
+        let n = self.names.len();
+        let percent = |part: f64| format!("{:.0}", 100.0 * part);
+        let row = |joint: usize| {
+            let (used, drift) = (monitor.largest_used(), monitor.drift());
+            let values = [used[joint], used[n + joint], drift[joint], drift[n + joint]];
+            let cells = values.into_iter().map(percent);
+            std::iter::once(self.names[joint].clone()).chain(cells).collect()
+        };
+        let rows: Vec<Vec<String>> = (0..n).map(row).collect();
+        let header = ["joint", "q used [%]", "qd used [%]", "drift of q [%]", "drift of qd [%]"];
+        let _ = write!(text, "\n{}", table(&header, &rows));
+        output::print(&text)
+    }
+}
+
+/// Returns the state of the largest part, and that part.
+fn greatest(parts: &[f64]) -> (usize, f64) {
+    let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
+    parts.iter().enumerate().max_by(by_size).map_or((0, 0.0), |(state, part)| (state, *part))
+}
+
+fn line(value: &Value) -> Result<()> {
+    output::print_json_text(&format!("{value}\n"))
+}

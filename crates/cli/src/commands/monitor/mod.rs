@@ -1,0 +1,9 @@
+//! `reachtube monitor`: samples on standard input, and at once what leaves a model's sets.
+
+mod arguments;
+mod events;
+mod run;
+mod samples;
+
+pub(crate) use arguments::Arguments;
+pub(crate) use run::run;

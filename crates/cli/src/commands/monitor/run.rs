@@ -1,0 +1,212 @@
+use std::io::BufRead;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use reachtube::Model;
+use reachtube::conform::Error as ConformError;
+use reachtube::conform::monitor::Schedule;
+use reachtube::identify::prepare::VelocitySource;
+use reachtube::pipeline::LiveMonitor;
+use reachtube::robot::Robot;
+
+use crate::commands::monitor::arguments::Arguments;
+use crate::commands::monitor::events::Events;
+use crate::commands::monitor::samples::{Form, Sample};
+use crate::error::{Error, Result};
+use crate::outcome::Outcome;
+use crate::output;
+
+/// Samples from which the time between samples is taken.
+const FIRST: usize = 17;
+
+/// Lines that may wait to be judged.
+const WAITING: usize = 1024;
+
+/// What comes from outside.
+enum Message {
+    Line(std::io::Result<String>),
+    /// The user asked for the end.
+    Interrupt,
+}
+
+pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    let (model, setup) = Model::open(&args.model)?;
+    if setup.dynamics().linear_system().is_none() {
+        return Err(ConformError::NotLinear.into());
+    }
+    let robot = Robot::from_description(&model.robot)?;
+    let mut watch = Watch {
+        args,
+        model: &model,
+        form: None,
+        first: Vec::new(),
+        monitor: None,
+        events: Events::new(&robot, json),
+        next_gauge: f64::NEG_INFINITY,
+    };
+    let ended = watch.follow(&listen());
+    watch.begin().or_else(|error| if ended.is_ok() { Err(error) } else { Ok(()) })?;
+    let outcome = match &mut watch.monitor {
+        None => Outcome::Done,
+        Some(monitor) => {
+            let left = monitor.finish().to_vec();
+            watch.events.left(&left)?;
+            let words = ended.as_ref().copied().unwrap_or("error");
+            watch.events.summary(monitor.found(), words)?;
+            Outcome::of(monitor.found().totals().left == 0)
+        }
+    };
+    ended.map(|_| outcome)
+}
+
+/// Reads lines in a thread of their own, so that an interrupt is noticed while none comes.
+fn listen() -> Receiver<Message> {
+    let (lines, messages) = sync_channel(WAITING);
+    let interrupts = lines.clone();
+    // Without a handler, an interrupt ends the command without a summary.
+    if ctrlc::set_handler(move || drop(interrupts.send(Message::Interrupt))).is_err() {
+        output::note("Ctrl-C ends the command without a summary");
+    }
+    std::thread::spawn(move || read(&lines));
+    messages
+}
+
+fn read(lines: &SyncSender<Message>) {
+    for line in std::io::stdin().lock().lines() {
+        if lines.send(Message::Line(line)).is_err() {
+            return;
+        }
+    }
+    // An empty error marks the end of the input.
+    let end = std::io::Error::from(std::io::ErrorKind::UnexpectedEof);
+    let _ = lines.send(Message::Line(Err(end)));
+}
+
+/// A monitor and what it needs before it can begin.
+struct Watch<'a> {
+    args: &'a Arguments,
+    model: &'a Model,
+    form: Option<Form>,
+    /// The samples before the time between samples is known, with their lines.
+    first: Vec<(u64, Sample)>,
+    monitor: Option<LiveMonitor>,
+    events: Events,
+    next_gauge: f64,
+}
+
+impl Watch<'_> {
+    /// Follows the samples to their end, and returns how they ended.
+    fn follow(&mut self, messages: &Receiver<Message>) -> Result<&'static str> {
+        let mut number = 0;
+        for message in messages {
+            let line = match message {
+                Message::Interrupt => return Ok("interrupt"),
+                Message::Line(Ok(line)) => line,
+                Message::Line(Err(error)) => {
+                    return match error.kind() {
+                        std::io::ErrorKind::UnexpectedEof => Ok("end of input"),
+                        _ => Err(wrong(number + 1, &error.to_string())),
+                    };
+                }
+            };
+            number += 1;
+            if !line.trim().is_empty() {
+                self.take(number, &line)?;
+            }
+        }
+        Ok("end of input")
+    }
+
+    fn take(&mut self, number: u64, line: &str) -> Result<()> {
+        let form = match &self.form {
+            Some(form) => form,
+            None => {
+                let form = Form::of(line, self.model.joints());
+                let form = self.form.insert(form.map_err(|problem| wrong(number, &problem))?);
+                if matches!(form, Form::Csv(_)) {
+                    return Ok(());
+                }
+                form
+            }
+        };
+        let sample = form.sample(line).map_err(|problem| wrong(number, &problem))?;
+        if self.monitor.is_some() {
+            return self.judge(number, &sample);
+        }
+        self.first.push((number, sample));
+        if self.args.step.is_some() || self.first.len() >= FIRST {
+            self.begin()?;
+        }
+        Ok(())
+    }
+
+    /// Makes the monitor, once the time between samples is known, and judges the first samples.
+    fn begin(&mut self) -> Result<()> {
+        if self.monitor.is_some() {
+            return Ok(());
+        }
+        let Arguments { step, horizon, every, max_gap, .. } = self.args;
+        let times = self.first.windows(2).map(|pair| pair[1].1.t - pair[0].1.t);
+        let mut steps: Vec<f64> = times.filter(|step| *step > 0.0).collect();
+        steps.sort_by(f64::total_cmp);
+        let Some(step) = step.or_else(|| steps.get(steps.len() / 2).copied()) else {
+            let number = self.first.last().map_or(1, |(number, _)| *number);
+            return Err(wrong(number, "there are no two samples at increasing times"));
+        };
+        let step = rounded(step);
+        let schedule = Schedule::new(self.model, step);
+        let horizon = horizon.unwrap_or(schedule.horizon);
+        let usual = Schedule::with_horizon(horizon, step);
+        let schedule = Schedule {
+            every: every.unwrap_or(usual.every),
+            longest_gap: max_gap.unwrap_or(usual.longest_gap),
+            ..usual
+        };
+        let velocity = match self.args.differentiate {
+            true => VelocitySource::Differentiated,
+            false => VelocitySource::Recorded,
+        };
+        let monitor = LiveMonitor::new(self.model, schedule, velocity)?;
+        output::note(&format!(
+            "samples every {step} s, windows of {} s, a new one every {:.4} s",
+            monitor.found().horizon(),
+            schedule.every
+        ));
+        if monitor.delay() > 0.0 {
+            output::note(&format!(
+                "answers come {:.3} s late: the model's recordings were filtered, or their \
+                 accelerations used, with samples from after each one",
+                monitor.delay()
+            ));
+        }
+        self.monitor = Some(monitor);
+        for (number, sample) in std::mem::take(&mut self.first) {
+            self.judge(number, &sample)?;
+        }
+        Ok(())
+    }
+
+    fn judge(&mut self, number: u64, sample: &Sample) -> Result<()> {
+        let Some(monitor) = &mut self.monitor else { return Ok(()) };
+        let Sample { t, q, qd, tau } = sample;
+        let left =
+            monitor.push(*t, q, qd, tau).map_err(|problem| wrong(number, &problem.to_string()))?;
+        self.events.left(left)?;
+        if let Some(every) = self.args.gauge_every
+            && *t >= self.next_gauge
+        {
+            self.events.gauge(*t, monitor.found())?;
+            self.next_gauge = t + every;
+        }
+        Ok(())
+    }
+}
+
+/// Rounds a measured time between samples to a whole rate, or to a microsecond.
+fn rounded(step: f64) -> f64 {
+    let of_rate = step.recip().round().recip();
+    if (of_rate / step - 1.0).abs() < 1e-3 { of_rate } else { (1e6 * step).round().max(1.0) / 1e6 }
+}
+
+fn wrong(line: u64, problem: &str) -> Error {
+    Error::Sample { line, problem: problem.into() }
+}

@@ -1,0 +1,308 @@
+use std::sync::Arc;
+
+use reachtube_reach::{Propagation, TimeGrid};
+use reachtube_recordings::{EvenSamples, Sample, SampleError};
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::model::file::Model;
+use crate::monitor::delayed::Delayed;
+use crate::monitor::input::InputOf;
+use crate::monitor::leave::Leave;
+use crate::monitor::nominal::LiveNominal;
+use crate::monitor::schedule::Schedule;
+use crate::monitor::window::{Sets, Window};
+use crate::tube::grids::Grid;
+
+/// The weight of one more window in the drift, once there are many.
+const DRIFT_WEIGHT: f64 = 1.0 / 16.0;
+
+/// Compares samples with the reachable sets of a linear model as they are recorded.
+///
+/// The motion is cut into overlapping windows ([`Schedule`]). Each begins at a measured state, as a
+/// recording of a suite of its own does, and its values are compared with the model's set as
+/// [`check()`](crate::check()) compares the rows of recordings, whatever the model's notion is.
+/// After it was made, a monitor allocates nothing, and the time for a sample is bounded.
+///
+/// # Guarantee
+///
+/// A value that is not reported lies in the interval hull of the reachable set, widened by V, in
+/// each window that is open: some disturbance reaches it in that state. For a value that is
+/// reported as [proved](Leave::proved), no start in X0, no disturbance with values in U of the
+/// model's kind and no noise in V explain the window up to that sample, under the inputs and times
+/// as they are in double precision. That also disproves the notions phase-plane, exact and trace,
+/// whose sets lie in the hull. Values at times between samples are interpolated and carry what
+/// that changes.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_conform::monitor::{Monitor, Schedule};
+/// use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent, conform};
+/// use reachtube_recordings::{MemoryRuns, Run, Torque};
+/// use reachtube_robot::Robot;
+///
+/// // Two runs of the arm at rest, a little apart.
+/// let mut runs = MemoryRuns::default();
+/// for offset in [0.0, 0.001] {
+///     let states = [vec![offset; 6], vec![0.0; 6]].concat().repeat(3);
+///     let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18])?;
+///     runs.push(&format!("run{offset}"), Some("A"), None, run);
+/// }
+/// let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6))?;
+/// let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent)?;
+/// let model = Model::new(&problem, &conform(&problem, &Silent, None)?);
+///
+/// let mut monitor = Monitor::new(&model, Schedule::new(&model, 0.004))?;
+/// assert!(monitor.push(0.0, &[0.1; 6], &[0.0; 6], &[0.0; 6])?.is_empty());
+/// // The arm jumps.
+/// let left = monitor.push(0.004, &[0.2; 6], &[0.0; 6], &[0.0; 6])?;
+/// assert!(left[0].proved && left[0].joint == 1 && left[0].excess > 0.09);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Monitor {
+    even: EvenSamples,
+    delayed: Option<Delayed>,
+    judge: Judge,
+}
+
+/// What judges samples at even times.
+#[derive(Debug)]
+struct Judge {
+    sets: Sets,
+    nominal: Option<LiveNominal>,
+    input: InputOf,
+    /// Steps from the beginning of one window to the beginning of the next.
+    every: u64,
+    windows: Vec<Window>,
+    /// Number of samples since the beginning.
+    count: u64,
+    /// The input of the sample before, n.
+    before: Vec<f64>,
+    leaves: Vec<Leave>,
+    progress: Progress,
+}
+
+/// How many samples, windows and rows there were.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Totals {
+    /// Samples at even times.
+    pub samples: u64,
+    /// Windows that ended.
+    pub windows: u64,
+    /// Windows with a value outside the set.
+    pub left: u64,
+    /// Rows: a window's value in one state at one sample.
+    pub rows: u64,
+    /// Rows that do not hold.
+    pub outside: u64,
+}
+
+/// What was found so far.
+#[derive(Debug)]
+struct Progress {
+    totals: Totals,
+    /// The part of the set that the last window used, which has ended, 2n.
+    last: Vec<f64>,
+    /// The part used by the open windows and the last one, 2n.
+    used: Vec<f64>,
+    /// The largest part used, 2n.
+    largest: Vec<f64>,
+    drift: Vec<f64>,
+}
+
+impl Monitor {
+    /// Makes the monitor of a model.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotLinear`] for a model whose sets cannot be computed ahead of its motion,
+    /// [`Error::SettingRange`] for a schedule that is not possible, and when the solution of the
+    /// system cannot be enclosed over a window.
+    pub fn new(model: &Model, schedule: Schedule) -> Result<Self> {
+        let setup = model.setup()?;
+        let [steps, every] = schedule.steps()?;
+        let system = setup.dynamics().linear_system().ok_or(Error::NotLinear)?;
+        let (n, settings, step) = (model.joints(), setup.settings(), schedule.step);
+        let times = TimeGrid::uniform(step, steps + 1);
+        let propagation = Propagation::new(system, &times)?;
+        let input_gains = settings.disturbance.input_gains(&propagation);
+        let grid = Grid { times: Arc::new(times), propagation, input_gains };
+        let sets = Sets::new(grid, model.sets(), settings.states.rows(2 * n));
+        let delayed = Delayed::new(setup.robot(), settings.torque, step);
+        let windows = vec![Window::new(n); steps / every + 1];
+        // Samples at even times that one sample may complete.
+        let at_once = (schedule.longest_gap / step).ceil() as usize + 1;
+        let mut judge = Judge {
+            nominal: LiveNominal::new(&setup, system, step)?,
+            input: InputOf::new(setup.robot(), settings.torque),
+            every: every as u64,
+            windows,
+            count: 0,
+            before: vec![0.0; n],
+            leaves: Vec::new(),
+            progress: Progress::new(2 * n),
+            sets,
+        };
+        judge.leaves.reserve(at_once * judge.most_at_once());
+        Ok(Self { even: EvenSamples::new(n, step, schedule.longest_gap), delayed, judge })
+    }
+
+    /// Takes a sample: its time \[s\], positions, velocities and torques (n each; rad, rad/s, N m,
+    /// of the model's kind). Returns the values that are outside, in the open windows one after
+    /// another.
+    ///
+    /// # Errors
+    ///
+    /// A sample that cannot be used. It changes nothing.
+    pub fn push(
+        &mut self,
+        time: f64,
+        q: &[f64],
+        qd: &[f64],
+        torque: &[f64],
+    ) -> Result<&[Leave], SampleError> {
+        self.even.take(time, [q, qd, torque])?;
+        let Self { even, delayed, judge } = self;
+        judge.leaves.clear();
+        while let Some(sample) = even.next() {
+            match delayed {
+                None => judge.take(sample),
+                Some(delayed) => {
+                    delayed.take(sample);
+                    while let Some(sample) = delayed.next(false) {
+                        judge.take(sample);
+                    }
+                }
+            }
+        }
+        Ok(&self.judge.leaves)
+    }
+
+    /// Judges the samples that wait for later ones, as at the end of a recording, and begins anew:
+    /// the next sample may have any time. The totals stay.
+    pub fn finish(&mut self) -> &[Leave] {
+        let Self { even, delayed, judge } = self;
+        judge.leaves.clear();
+        if let Some(delayed) = delayed {
+            judge.leaves.reserve(delayed.waiting() * judge.most_at_once());
+            while let Some(sample) = delayed.next(true) {
+                judge.take(sample);
+            }
+            delayed.clear();
+        }
+        even.clear();
+        judge.count = 0;
+        judge.windows.iter_mut().for_each(|window| window.sample = None);
+        &self.judge.leaves
+    }
+
+    /// Returns how many samples, windows and rows there were.
+    #[must_use]
+    pub fn totals(&self) -> Totals {
+        self.judge.progress.totals
+    }
+
+    /// Returns the gauge of each state: the largest part of the set's radius, from its centre, that
+    /// the open windows and the last one before them used, 2n. A value above 1 is outside. In
+    /// floating point.
+    #[must_use]
+    pub fn used(&self) -> &[f64] {
+        &self.judge.progress.used
+    }
+
+    /// Returns the largest gauge of each state since the beginning, 2n.
+    #[must_use]
+    pub fn largest_used(&self) -> &[f64] {
+        &self.judge.progress.largest
+    }
+
+    /// Returns the drift of each state: where in the set, in parts of its radius, windows end, on
+    /// average over about the last 16, 2n. A robot that changes moves it away from 0.
+    #[must_use]
+    pub fn drift(&self) -> &[f64] {
+        &self.judge.progress.drift
+    }
+
+    /// Returns the time by which answers are late, s: torques behind the gear need the velocities
+    /// of later samples, from which the motors' inertia is computed.
+    #[must_use]
+    pub fn delay(&self) -> f64 {
+        self.delayed.as_ref().map_or(0.0, Delayed::delay)
+    }
+
+    /// Returns the length of a window, s.
+    #[must_use]
+    pub fn horizon(&self) -> f64 {
+        self.judge.sets.grid.times.times().last().copied().unwrap_or(0.0)
+    }
+}
+
+impl Judge {
+    /// Returns how many values may be outside at one sample.
+    fn most_at_once(&self) -> usize {
+        self.sets.rows * self.windows.len()
+    }
+
+    fn take(&mut self, sample: &Sample) {
+        let Self { sets, nominal, windows, before, leaves, progress, .. } = self;
+        for window in windows.iter_mut() {
+            window.advance(sets, nominal.as_mut(), before);
+        }
+        if self.count.is_multiple_of(self.every) {
+            let free = windows.iter_mut().find(|window| window.sample.is_none());
+            free.into_iter().for_each(|window| window.open(sample));
+        }
+        self.count += 1;
+        progress.begin();
+        for window in windows.iter_mut().filter(|window| window.sample.is_some()) {
+            let outside = window.judge(sets, sample, |leave| {
+                progress.totals.left += u64::from(leave.first);
+                if leaves.len() < leaves.capacity() {
+                    leaves.push(leave);
+                }
+            });
+            progress.take(window, (sets.rows as u64, outside));
+            if window.sample == Some(sets.last()) {
+                progress.end(window);
+                window.sample = None;
+            }
+        }
+        self.input.evaluate(sample, &mut self.before);
+    }
+}
+
+impl Progress {
+    fn new(states: usize) -> Self {
+        let zeros = || vec![0.0; states];
+        let [last, used, largest, drift] = [zeros(), zeros(), zeros(), zeros()];
+        Self { totals: Totals::default(), last, used, largest, drift }
+    }
+
+    /// Begins a sample.
+    fn begin(&mut self) {
+        self.totals.samples += 1;
+        self.used.copy_from_slice(&self.last);
+    }
+
+    /// Takes what a window found at the sample.
+    fn take(&mut self, window: &Window, (rows, outside): (u64, u64)) {
+        self.totals.rows += rows;
+        self.totals.outside += outside;
+        let used = self.used.iter_mut().zip(&window.used).zip(&mut self.largest);
+        for ((used, of_window), largest) in used {
+            *used = used.max(*of_window);
+            *largest = largest.max(*of_window);
+        }
+    }
+
+    /// Takes a window that ends.
+    fn end(&mut self, window: &Window) {
+        self.totals.windows += 1;
+        let weight = DRIFT_WEIGHT.max(1.0 / self.totals.windows as f64);
+        self.last.copy_from_slice(&window.used);
+        let drift = self.drift.iter_mut().zip(&window.signed);
+        drift.for_each(|(drift, signed)| *drift += weight * (signed - *drift));
+    }
+}

@@ -1,0 +1,128 @@
+//! Samples one at a time, or as arrays, beside the sets of a model.
+
+use std::path::Path;
+
+use pyo3::prelude::*;
+use reachtube::Model;
+use reachtube::conform::data::Side;
+use reachtube::conform::monitor::{Leave, Schedule};
+use reachtube::identify::prepare::VelocitySource;
+use reachtube::pipeline::LiveMonitor;
+
+use crate::arrays::{Input, Output, array, values};
+use crate::failure::{Failure, Result};
+
+/// Time, window, joint, state, side, value, excess, radius, proved, first.
+type Left = (f64, f64, usize, String, &'static str, f64, f64, f64, bool, bool);
+
+/// A monitor of a model.
+#[pyclass(name = "Monitor", module = "reachtube._reachtube")]
+pub(crate) struct NativeMonitor {
+    monitor: LiveMonitor,
+    joints: usize,
+}
+
+#[pymethods]
+impl NativeMonitor {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        model: &str,
+        step: f64,
+        horizon: Option<f64>,
+        every: Option<f64>,
+        max_gap: Option<f64>,
+        differentiate: bool,
+    ) -> PyResult<Self> {
+        let made = || -> Result<Self> {
+            let (model, _) = Model::parse(model, Path::new("the model"))?;
+            let own = Schedule::new(&model, step);
+            let usual = Schedule::with_horizon(horizon.unwrap_or(own.horizon), step);
+            let schedule = Schedule {
+                every: every.unwrap_or(usual.every),
+                longest_gap: max_gap.unwrap_or(usual.longest_gap),
+                ..usual
+            };
+            let velocity = match differentiate {
+                true => VelocitySource::Differentiated,
+                false => VelocitySource::Recorded,
+            };
+            let monitor = LiveMonitor::new(&model, schedule, velocity)?;
+            Ok(Self { monitor, joints: model.joints() })
+        };
+        made().map_err(|failure| failure.raised(py))
+    }
+
+    /// Takes samples: K times, and K x n positions, velocities and torques.
+    fn push(
+        &mut self,
+        py: Python<'_>,
+        times: Input<'_>,
+        q: Input<'_>,
+        qd: Input<'_>,
+        tau: Input<'_>,
+    ) -> PyResult<Vec<Left>> {
+        let n = self.joints;
+        let mut take = || -> Result<Vec<Left>> {
+            let count = times.as_array().len();
+            let times = values("t", &times, &[count])?;
+            let [q, qd, tau] = [("q", &q), ("qd", &qd), ("tau", &tau)]
+                .map(|(name, array)| values(name, array, &[count, n]));
+            let (q, qd, tau) = (q?, qd?, tau?);
+            let mut all = Vec::new();
+            for (k, &time) in times.iter().enumerate() {
+                let row = |of: &'_ [f64]| k * n..(k * n + n).min(of.len());
+                let left = self.monitor.push(time, &q[row(&q)], &qd[row(&qd)], &tau[row(&tau)]);
+                let wrong = |error| Failure::Setting(format!("sample {k}: {error}"));
+                all.extend(left.map_err(wrong)?.iter().map(left_of));
+            }
+            Ok(all)
+        };
+        take().map_err(|failure| failure.raised(py))
+    }
+
+    fn finish(&mut self) -> Vec<Left> {
+        self.monitor.finish().iter().map(left_of).collect()
+    }
+
+    /// Samples, windows, windows left, rows, rows outside.
+    fn totals(&self) -> (u64, u64, u64, u64, u64) {
+        let totals = self.monitor.found().totals();
+        (totals.samples, totals.windows, totals.left, totals.rows, totals.outside)
+    }
+
+    fn used<'py>(&self, py: Python<'py>) -> Output<'py> {
+        self.states(py, self.monitor.found().used())
+    }
+
+    fn largest_used<'py>(&self, py: Python<'py>) -> Output<'py> {
+        self.states(py, self.monitor.found().largest_used())
+    }
+
+    fn drift<'py>(&self, py: Python<'py>) -> Output<'py> {
+        self.states(py, self.monitor.found().drift())
+    }
+
+    fn delay(&self) -> f64 {
+        self.monitor.delay()
+    }
+
+    fn horizon(&self) -> f64 {
+        self.monitor.found().horizon()
+    }
+}
+
+impl NativeMonitor {
+    fn states<'py>(&self, py: Python<'py>, values: &[f64]) -> Output<'py> {
+        array(py, values.to_vec(), &[values.len()])
+    }
+}
+
+fn left_of(leave: &Leave) -> Left {
+    let Leave { time, window, joint, state, side, value, excess, radius, proved, first } = *leave;
+    let side = match side {
+        Side::Upper => "upper",
+        Side::Lower => "lower",
+    };
+    (time, window, joint, state.to_string(), side, value, excess, radius, proved, first)
+}
