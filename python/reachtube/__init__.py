@@ -3,8 +3,9 @@
 Load a robot (`Robot`), and make a model of its logs in one call (`model`). Or open recordings
 (`Recordings`), filter and cut them (`prepare`), find the smallest uncertainty sets for which a
 model encloses them (`conform`), check other recordings (`check`), compute reachable sets (`reach`),
-draw a page (`report`), and watch a running robot (`monitor`). `identify` makes the robot from recordings, `excite` the
-motions for it, `abstract` models of any order, and `flowpipe` reachable sets of your own system.
+draw a page (`report`), and watch a running robot (`monitor`). `identify` makes the robot from
+recordings, `excite` the motions for it, `abstract` models of any order, and `flowpipe` reachable
+sets of your own system.
 """
 
 from . import errors, fleet, io

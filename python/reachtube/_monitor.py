@@ -45,8 +45,8 @@ class Leave:
 class Monitor:
     """Compares samples with the reachable sets of a linear model as they are recorded.
 
-    Make one with `monitor`. Windows of the motion begin at measured states and overlap. Within each,
-    values are compared as `check` compares the rows of a recording.
+    Make one with `monitor`. Windows of the motion begin at measured states and overlap. Within
+    each, values are compared as `check` compares the rows of a recording.
     """
 
     __slots__ = ("_native",)

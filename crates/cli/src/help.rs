@@ -27,8 +27,7 @@ const GROUPS: &[(&str, &[&str])] = &[
         "The steps of `model`, one by one",
         &["identify", "prepare", "conform", "abstract", "reach", "excite", "convert"],
     ),
-    ("The paper", &["demo", "campaign", "reproduce"]),
-    ("The rest", &["robot", "completions", "man"]),
+    ("The paper, and the rest", &["demo", "campaign", "reproduce", "robot", "completions", "man"]),
 ];
 
 const TEMPLATE: &str =
