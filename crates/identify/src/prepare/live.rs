@@ -179,7 +179,7 @@ impl LiveFilter {
             rate,
             cut_off,
         })?;
-        // The model's robot as it is at its first run, which is all that a stream of samples can show.
+        // The warmth of a running robot is unknown: it counts as in its first run.
         let robot = if robot.warms_by().is_empty() { robot.clone() } else { robot.at_run(1.0) };
         let n = robot.joint_count();
         let weights = low_pass.weights(PERIODS);

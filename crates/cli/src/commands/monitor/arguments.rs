@@ -10,8 +10,9 @@ Examples:
   reachtube monitor --model model.json --step 0.001 --horizon 0.2 --json < run.csv
 
 Reads samples from standard input, either CSV with the header t,q1..qn,qd1..qdn,tau1..taun or one
-JSON object per line: {\"t\":0.1,\"q\":[..],\"qd\":[..],\"tau\":[..]}. Prints a line at once when a window
-of the motion leaves the reachable set, and a summary at the end or on Ctrl-C (docs/monitor.md).
+JSON object per line: {\"t\":0.1,\"q\":[..],\"qd\":[..],\"tau\":[..]}. Prints a line at once when
+a window of the motion leaves the reachable set, and a summary at the end or on Ctrl-C
+(docs/monitor.md).
 
 Exit codes: 0 no window left its set, 1 a window left its set, 2 error.";
 
