@@ -33,5 +33,6 @@ pub use stop::study::{StopQuestion, StopStudy, stop_study};
 pub use stop::text::{annex_table, recorded_table};
 pub use verdict::clearance::Clearance;
 pub use verdict::decide::Advice;
+pub use verdict::findings::findings;
 pub use verdict::verification::{Answer, Verification, verify};
 pub use verdict::witness::Witness;

@@ -1,70 +1,27 @@
 //! Verdicts as text.
 
 use reachtube_conform::result::Table;
-use reachtube_scalar::number::{at_least, outward};
+use reachtube_scalar::number::at_least;
 
 use crate::body::body::Body;
 use crate::scene::scenario::Scene;
-use crate::verdict::decide::Advice;
+use crate::verdict::findings::{findings, lower, worst_first};
 use crate::verdict::verification::{Answer, Verification};
 
 /// Returns the verdicts as text: the worst first, a table of the motions, the margins, and what to
 /// do next.
 #[must_use]
 pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> String {
-    let mut order: Vec<&Verification> = all.iter().collect();
-    let smallest = |v: &Verification| v.clearances.first().map_or(f64::INFINITY, |c| c.distance);
-    order.sort_by(|a, b| b.answer.cmp(&a.answer).then(smallest(a).total_cmp(&smallest(b))));
-    let mut lines: Vec<String> =
-        order.first().map(|worst| verdict(worst, scene)).into_iter().collect();
+    let order = worst_first(all);
+    let findings = findings(all, scene);
+    let (verdict, advice) = findings.split_at(findings.len().min(1));
+    let mut lines: Vec<String> = verdict.iter().map(|finding| finding.text.clone()).collect();
     lines.push(String::new());
     let header = ["motion", "answer", "closest link", "obstacle", "proved distance [m]", "at [s]"];
     lines.push(Table::new(header, order.iter().map(|v| row(v)).collect()).to_string());
     lines.push(margins(all, body));
-    let advice: Vec<String> = order.iter().filter_map(|v| next(v)).collect();
-    lines.extend(advice.into_iter().take(3));
+    lines.extend(advice.iter().take(3).map(|finding| finding.text.clone()));
     lines.join("\n").trim_end().to_string() + "\n"
-}
-
-/// Returns the verdict about the worst motion as a sentence.
-fn verdict(worst: &Verification, scene: &Scene) -> String {
-    let keep = match scene.clearance {
-        0.0 => String::new(),
-        clearance => format!(" more than {clearance} m"),
-    };
-    let case = &worst.case;
-    match (worst.answer, worst.clearances.first(), &worst.closest) {
-        (Answer::Unsafe, _, Some(found)) => {
-            let how = match found.distance {
-                overlap if overlap < 0.0 => {
-                    format!("overlaps `{}` by {:.4} m", found.obstacle, -overlap)
-                }
-                near => format!("is {near:.4} m from `{}`", found.obstacle),
-            };
-            format!(
-                "unsafe: on a motion of the model, the link of {} {how} at {:.3} s ({case}).",
-                found.link, found.time
-            )
-        }
-        (Answer::Safe, Some(pair), _) => format!(
-            "safe: on every motion of the model each link stays{keep} clear; the smallest proved \
-             distance is {} m, of the link of {} from `{}` at {:.3} s ({case}).",
-            lower(pair.distance),
-            pair.link,
-            pair.obstacle,
-            pair.time
-        ),
-        (Answer::Safe, None, _) => "safe: no obstacle concerns a link.".into(),
-        (_, Some(pair), found) => format!(
-            "undecided: no distance{keep} is proved between the link of {} and `{}` at {:.3} s \
-             ({case}); the closest motion found stays {} m away.",
-            pair.link,
-            pair.obstacle,
-            pair.time,
-            found.as_ref().map_or("?".into(), |found| format!("{:.4}", found.distance)),
-        ),
-        (_, None, _) => format!("undecided: the reachable set ends before the motion ({case})."),
-    }
 }
 
 fn row(v: &Verification) -> Vec<String> {
@@ -111,36 +68,4 @@ fn margins(all: &[Verification], body: &Body) -> String {
         ..Table::new(["link of", "margin [m]", "motion", "at [s]"], rows)
     }
     .to_string()
-}
-
-/// Returns what would decide an open question, as a sentence.
-fn next(v: &Verification) -> Option<String> {
-    let case = &v.case;
-    Some(match v.advice? {
-        Advice::Refine(parts) => {
-            format!("{case}: `refine = {parts}` in the scenario proves that all links stay clear.")
-        }
-        Advice::SmallerSets(factor) => format!(
-            "{case}: with X0 and U {factor:.2} times as wide, all links would be proved to stay \
-             clear; a better model or cleaner recordings give smaller sets."
-        ),
-        Advice::Nominal => format!(
-            "{case}: without any uncertainty no distance is proved either; move the obstacle or \
-             the motion."
-        ),
-        Advice::SetLost => format!(
-            "{case}: the reachable set ends before the motion; `until` in the scenario uses only \
-             the samples before."
-        ),
-        Advice::NotTried => format!(
-            "{case}: smaller sets may decide; they were not tried, as each takes long to compute \
-             for a model that is not linear."
-        ),
-    })
-}
-
-/// Formats a proved distance with four decimals, rounded down.
-fn lower(distance: f64) -> String {
-    let [low, _] = outward([distance, distance], 4);
-    low
 }

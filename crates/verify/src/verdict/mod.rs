@@ -2,6 +2,7 @@
 
 pub(crate) mod clearance;
 pub(crate) mod decide;
+pub(crate) mod findings;
 mod gradient;
 mod part_of_step;
 pub(crate) mod verification;
