@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _reachtube
 from ._arrays import Array, frozen, numbers, real
+from ._findings import Finding, findings_of
 from ._model import text_of
 
 if TYPE_CHECKING:
@@ -85,6 +86,11 @@ class Monitor:
     def finish(self) -> list[Leave]:
         """End a recording: judge what waits for later samples, and begin anew at any time."""
         return [Leave(*left) for left in self._native.finish()]
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What was found so far: the verdict, then the first value outside."""
+        return findings_of(self._native.findings())
 
     @property
     def samples(self) -> int:

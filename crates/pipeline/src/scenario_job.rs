@@ -1,7 +1,8 @@
 //! The question of a scenario, as every front end asks it.
 
-use reachtube_conform::{Finding, Keep, Model, Opened, Progress, Setup};
+use reachtube_conform::{CheckJob, Finding, Keep, Model, Opened, Progress, Setup};
 use reachtube_files::distinct_names;
+use reachtube_recordings::RunSource;
 use reachtube_robot::Robot;
 use reachtube_verify::{
     Answer, Body, Capsules, Margin, Scenario, Scene, Verification, Witness, findings, picture,
@@ -43,6 +44,15 @@ impl ScenarioJob {
     /// A model, robot or capsules that cannot be read; obstacles that are not possible.
     pub fn new(scenario: Scenario) -> Result<Self> {
         let (model, setup) = Model::open(&scenario.model)?;
+        Self::with_model(scenario, model, setup)
+    }
+
+    /// Reads what a scenario names, but for the recordings, with a model in memory.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_model(scenario: Scenario, model: Model, setup: Setup) -> Result<Self> {
         let robot = Robot::from_description(&model.robot)?;
         let scene = scenario.scene(&robot)?;
         let body = Body::new(&robot, &Capsules::open(scenario.capsules.as_deref(), &robot)?);
@@ -57,17 +67,42 @@ impl ScenarioJob {
     ///
     /// # Errors
     ///
-    /// As [`check_job`], [`CheckJob::open`](reachtube_conform::CheckJob::open) and [`verify`].
+    /// As [`check_job`], [`CheckJob::open`] and [`verify`].
     pub fn run(self, progress: &dyn Progress) -> Result<Verified> {
         let Self { scenario, model, setup, body, scene } = self;
-        let job = check_job(model, setup, &scenario.data)?
-            .suites(&scenario.suites)
-            .until(scenario.until)
-            .keep(Keep::Needed);
-        let opened = job.open(progress)?;
-        let motions = verify(&opened.problem, &opened.tube, &body, &scene)?;
-        Ok(Verified { opened, body, scene, motions })
+        let job = check_job(model, setup, &scenario.data)?;
+        verified(job, &scenario, (body, scene), progress)
     }
+
+    /// Decides as [`run`](Self::run) does over recordings that were opened, or prepared, already.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`verify`].
+    ///
+    /// # Errors
+    ///
+    /// As [`CheckJob::open`] and [`verify`].
+    pub fn run_over(
+        self,
+        source: impl RunSource + 'static,
+        progress: &dyn Progress,
+    ) -> Result<Verified> {
+        let Self { scenario, model, setup, body, scene } = self;
+        verified(CheckJob::new(model, setup, source), &scenario, (body, scene), progress)
+    }
+}
+
+fn verified(
+    job: CheckJob,
+    scenario: &Scenario,
+    (body, scene): (Body, Scene),
+    progress: &dyn Progress,
+) -> Result<Verified> {
+    let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
+    let opened = job.open(progress)?;
+    let motions = verify(&opened.problem, &opened.tube, &body, &scene)?;
+    Ok(Verified { opened, body, scene, motions })
 }
 
 impl Verified {

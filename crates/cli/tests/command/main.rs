@@ -13,6 +13,7 @@ mod inspect;
 mod locks;
 mod model;
 mod monitor;
+mod newcomer;
 mod nonlinear;
 mod notions;
 mod options;
