@@ -1,4 +1,4 @@
-"""Answers of `stop` and `verify`: what the product wrote, as a record with its findings and files."""
+"""Answers of `stop` and `verify`: records with findings, a summary and files."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ pub(crate) fn stop(
 /// Decides whether links stay clear of the obstacles of a scenario: the text of a TOML file, which
 /// errors name `origin`, or JSON if there is none. Paths are relative to `folder`. Returns JSON as
 /// [`stop`] does, with the pictures and the closest motions as files. A model and recordings in
-/// memory take the place of those that the scenario names.
+/// memory replace the files that the scenario names.
 #[pyfunction]
 #[pyo3(signature = (scenario, origin, folder, in_memory=None, progress=None))]
 pub(crate) fn verify(
@@ -100,8 +100,8 @@ fn as_toml(text: String, origin: Option<String>, what: &str) -> Result<(String, 
         return Ok((text, origin));
     }
     let value: Value = serde_json::from_str(&text).map_err(Failure::setting)?;
-    let text = toml::to_string(&value)
-        .map_err(|error| Failure::Setting(format!("{what}: {error}; leave out what is None")))?;
+    let wrong = |error| Failure::Setting(format!("{what}: {error}; omit keys that are None"));
+    let text = toml::to_string(&value).map_err(wrong)?;
     Ok((text, what.into()))
 }
 

@@ -43,8 +43,8 @@ Example:
 /// Run every step on a simulated arm: record, fit, conform, calibrate, check, report
 ///
 /// The folder receives the recordings, the model and two report pages: one on the recordings that
-/// the model was made from, one on motions that were held out. cell.toml and brakes.toml beside them
-/// are for `verify` and `stop`.
+/// the model was made from, one on motions that were held out. It also receives cell.toml and
+/// brakes.toml, for `verify` and `stop`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
