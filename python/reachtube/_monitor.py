@@ -69,11 +69,11 @@ class Monitor:
         t
             Time of a sample, or K times, s.
         q
-            Positions, n or K x n, rad or m.
+            Positions, n or K x n.
         qd
-            Velocities, n or K x n, rad/s or m/s.
+            Velocities, n or K x n.
         tau
-            Torques of the model's kind, n or K x n, N m or N.
+            Torques of the model's kind, n or K x n.
 
         Raises
         ------
