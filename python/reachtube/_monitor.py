@@ -67,8 +67,12 @@ class Monitor:
         ----------
         t
             Time of a sample, or K times, s.
-        q, qd, tau
-            Positions, velocities and torques, n or K x n, of the model's kind.
+        q
+            Positions, n or K x n.
+        qd
+            Velocities, n or K x n.
+        tau
+            Torques of the model's kind, n or K x n.
 
         Raises
         ------
