@@ -39,6 +39,12 @@ const ROUNDS: usize = 25;
 /// Rows within this part of the largest deviation are kept for the next step.
 const CLOSE: f64 = 0.005;
 
+/// Rows of a program beyond which those that are far from deciding it are dropped.
+const MOST_ROWS: usize = 800;
+
+/// Rows within this part of the largest deviation are kept while rows are generated.
+const LOOSE: f64 = 0.05;
+
 /// The weight of the pull at least, in parts of the cost: without any, the program has no unique
 /// answer where a parameter does nothing.
 const LEAST_PULL: f64 = 1e-6;
@@ -96,12 +102,15 @@ impl StepProgram<'_> {
             if added.is_empty() {
                 break;
             }
+            if rows.len() > MOST_ROWS {
+                self.keep_within(LOOSE, &found.0, rows);
+            }
             rows.extend(added);
             found = self.solve_rows(rows)?;
         }
         let (unknowns, cost) = found;
         let numbers = self.numbers_of(&unknowns);
-        self.keep_tight(&unknowns, rows);
+        self.keep_within(CLOSE, &unknowns, rows);
         Ok(StepSolution { numbers, cost })
     }
 
@@ -332,10 +341,10 @@ impl StepProgram<'_> {
         all.into_values().map(|(_, row)| row).collect()
     }
 
-    /// Keeps the rows that nearly decide the answer, for the next step.
-    fn keep_tight(&self, unknowns: &[f64], rows: &mut Vec<StepRow>) {
+    /// Keeps the rows that hold with less than the part `least` of the largest deviation to spare.
+    fn keep_within(&self, least: f64, unknowns: &[f64], rows: &mut Vec<StepRow>) {
         let (layout, moved) = (self.layout(), self.moved(unknowns));
-        let limit = -CLOSE * self.program.scale();
+        let limit = -least * self.program.scale();
         rows.retain(|row| self.excess(*row, &layout, unknowns, &moved) > limit);
     }
 }
