@@ -21,9 +21,6 @@ use crate::program::layout::Layout;
 use crate::program::program::{Program, dot};
 use crate::program::solver::{Triplets, solve_cone};
 
-/// A row counts as violated beyond this part of the largest row.
-const TOLERANCE: f64 = 1e-7;
-
 /// Windows of the horizon at most; each adds its worst violated row.
 const WINDOWS: usize = 24;
 
@@ -39,12 +36,6 @@ const ROUNDS: usize = 25;
 /// Rows within this part of the largest deviation are kept for the next step.
 const CLOSE: f64 = 0.005;
 
-/// Rows of a program beyond which those that are far from deciding it are dropped.
-const MOST_ROWS: usize = 800;
-
-/// Rows within this part of the largest deviation are kept while rows are generated.
-const LOOSE: f64 = 0.05;
-
 /// The weight of the pull at least, in parts of the cost: without any, the program has no unique
 /// answer where a parameter does nothing.
 const LEAST_PULL: f64 = 1e-6;
@@ -54,8 +45,8 @@ const LEAST_PULL: f64 = 1e-6;
 /// Where other sets cost nearly as little, a step that left them would promise what no step gains.
 const SET_TRUST: f64 = 0.1;
 
-/// The tolerance of the solver. A step need not be exact: the cost at its end decides.
-const SOLVER_TOLERANCE: f64 = 1e-8;
+/// The tolerance of the solver, in parts of the tolerance of rows.
+const SOLVER_TOLERANCE: f64 = 0.1;
 
 /// The program of one step.
 pub(crate) struct StepProgram<'a> {
@@ -76,6 +67,9 @@ pub(crate) struct StepProgram<'a> {
     pub held: &'a [Group],
     /// Cost of a number's distance from 0.
     pub pull: f64,
+    /// A row counts as violated beyond this part of the largest row. A step need not be exact: the
+    /// cost at its end decides.
+    pub tolerance: f64,
 }
 
 /// Where a step leads.
@@ -102,15 +96,12 @@ impl StepProgram<'_> {
             if added.is_empty() {
                 break;
             }
-            if rows.len() > MOST_ROWS {
-                self.keep_within(LOOSE, &found.0, rows);
-            }
             rows.extend(added);
             found = self.solve_rows(rows)?;
         }
         let (unknowns, cost) = found;
         let numbers = self.numbers_of(&unknowns);
-        self.keep_within(CLOSE, &unknowns, rows);
+        self.keep_tight(&unknowns, rows);
         Ok(StepSolution { numbers, cost })
     }
 
@@ -253,7 +244,8 @@ impl StepProgram<'_> {
         let mut objective: Vec<f64> = layout.cost.iter().enumerate().map(of_set).collect();
         objective.extend(free.iter().map(|&p| slopes[p] / total));
         objective.extend(free.iter().map(|_| pull / total));
-        let found = solve_cone(&objective, &matrix, &bounds, SOLVER_TOLERANCE)?.found;
+        let tolerance = SOLVER_TOLERANCE * self.tolerance;
+        let found = solve_cone(&objective, &matrix, &bounds, tolerance)?.found;
         let value: f64 = found.iter().zip(&objective).map(|(x, w)| x * w).sum();
         let present: f64 = free.iter().map(|&p| slopes[p] * self.numbers[p]).sum();
         let held = (0..self.numbers.len()).filter(|p| !free.contains(p));
@@ -307,7 +299,7 @@ impl StepProgram<'_> {
         let (layout, moved) = (self.layout(), self.moved(unknowns));
         let known: HashSet<StepRow> = known.iter().copied().collect();
         let states = self.fit.settings.states.rows(2 * self.fit.joints());
-        let limit = TOLERANCE * self.program.scale();
+        let limit = self.tolerance * self.program.scale();
         type Worst = BTreeMap<(usize, usize, usize, bool), (f64, StepRow)>;
         let take = |worst: &mut Worst, key, excess: f64, row| {
             let entry = worst.entry(key).or_insert((excess, row));
@@ -341,10 +333,10 @@ impl StepProgram<'_> {
         all.into_values().map(|(_, row)| row).collect()
     }
 
-    /// Keeps the rows that hold with less than the part `least` of the largest deviation to spare.
-    fn keep_within(&self, least: f64, unknowns: &[f64], rows: &mut Vec<StepRow>) {
+    /// Keeps the rows that nearly decide the answer, for the next step.
+    fn keep_tight(&self, unknowns: &[f64], rows: &mut Vec<StepRow>) {
         let (layout, moved) = (self.layout(), self.moved(unknowns));
-        let limit = -least * self.program.scale();
+        let limit = -CLOSE * self.program.scale();
         rows.retain(|row| self.excess(*row, &layout, unknowns, &moved) > limit);
     }
 }

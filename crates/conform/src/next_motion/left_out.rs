@@ -187,8 +187,7 @@ impl Without<'_> {
         let growth = own.iter().map(growth).try_fold(1.0, |max: f64, g| g.map(|g| max.max(g)));
         let compared = match self.problem.dynamics().linear_system() {
             Some(_) => {
-                let [initial_gauge, input_gauge] =
-                    Program::growth_in_turn(own, &sets, input_only);
+                let [initial_gauge, input_gauge] = Program::growth_in_turn(own, &sets, input_only);
                 let outside = Some(own.iter().map(|own| own.outside(&sets)).sum());
                 LeftOut { outside, gauge: growth, initial_gauge, input_gauge, ..unknown }
             }

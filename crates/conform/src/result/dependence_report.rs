@@ -48,7 +48,8 @@ fn table_of_left_out(model: &Model) -> Table {
             Some(_) => "none found",
         };
         let outside = left.outside.map(|outside| format!("{outside} of {}", left.rows));
-        let times = |gauge: Option<f64>| or(gauge.map(|gauge| format!("x {}", at_least(gauge))), none);
+        let times =
+            |gauge: Option<f64>| or(gauge.map(|gauge| format!("x {}", at_least(gauge))), none);
         let mut row = vec![
             left.motion.clone(),
             or(left.cost.map(four_decimals), "not computed"),
