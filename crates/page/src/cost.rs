@@ -186,7 +186,7 @@ fn by_motion(model: &Model) -> TextTable {
             factor(left.input_gauge),
         ]
     };
-    // The factors of X0 and of U in turn are those of linear models.
+    // Only linear models have the factors of X0 and of U in turn.
     let in_turn = motions.iter().any(|(left, _)| left.initial_gauge.is_some());
     let columns = if in_turn { 6 } else { 4 };
     let first = |mut row: Vec<String>| {

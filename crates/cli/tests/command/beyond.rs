@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::fixture::Lab;
 
-/// The largest speed of the fast motions, twice that of the slow ones, rad/s.
+/// The largest speed of the fast motions, rad/s: slow motions reach half of it.
 const LIMIT: f64 = 4.1;
 
 const PENDULUM: &str = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\

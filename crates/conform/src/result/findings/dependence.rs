@@ -112,8 +112,7 @@ impl Finding {
     }
 }
 
-/// Returns which of X0 and U has to grow for a motion, in words; nothing if they did not grow in
-/// turn.
+/// Returns which of X0 and U has to grow for a motion, in words; no words if it is not known.
 fn in_turn(left: &LeftOut) -> String {
     let Some(initial) = left.initial_gauge else { return String::new() };
     let input = match left.input_gauge {
