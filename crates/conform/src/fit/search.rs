@@ -40,21 +40,17 @@ pub(crate) struct SearchEffort {
     pub settled: f64,
     /// Steps at most.
     pub steps: usize,
-    /// The tolerance of the rows of a step.
-    pub tolerance: f64,
     /// Whether the robot must be physical after each step, at every position that is searched.
     pub is_physical: bool,
 }
 
 impl SearchEffort {
     /// For the answer.
-    pub(crate) const WHOLE: Self =
-        Self { settled: 5e-5, steps: 40, tolerance: 1e-7, is_physical: true };
+    pub(crate) const WHOLE: Self = Self { settled: 5e-5, steps: 40, is_physical: true };
     /// For where to start.
     pub(crate) const START: Self = Self { is_physical: true, ..Self::QUICK };
     /// For comparisons.
-    pub(crate) const QUICK: Self =
-        Self { settled: 2e-3, steps: 12, tolerance: 1e-4, is_physical: false };
+    pub(crate) const QUICK: Self = Self { settled: 2e-3, steps: 12, is_physical: false };
 }
 
 /// A point of the search.
@@ -94,7 +90,6 @@ impl Search<'_> {
                     trust,
                     held: &self.held,
                     pull: self.pull,
-                    tolerance: self.effort.tolerance,
                 };
                 let Ok(answer) = step.solve(&mut rows) else { break 'search };
                 let promised = self.value(&point) - answer.cost;

@@ -21,6 +21,9 @@ use crate::program::layout::Layout;
 use crate::program::program::{Program, dot};
 use crate::program::solver::{Triplets, solve_cone};
 
+/// A row counts as violated beyond this part of the largest row.
+const TOLERANCE: f64 = 1e-7;
+
 /// Windows of the horizon at most; each adds its worst violated row.
 const WINDOWS: usize = 24;
 
@@ -45,8 +48,8 @@ const LEAST_PULL: f64 = 1e-6;
 /// Where other sets cost nearly as little, a step that left them would promise what no step gains.
 const SET_TRUST: f64 = 0.1;
 
-/// The tolerance of the solver, in parts of the tolerance of rows.
-const SOLVER_TOLERANCE: f64 = 0.1;
+/// The tolerance of the solver. A step need not be exact: the cost at its end decides.
+const SOLVER_TOLERANCE: f64 = 1e-8;
 
 /// The program of one step.
 pub(crate) struct StepProgram<'a> {
@@ -67,9 +70,6 @@ pub(crate) struct StepProgram<'a> {
     pub held: &'a [Group],
     /// Cost of a number's distance from 0.
     pub pull: f64,
-    /// A row counts as violated beyond this part of the largest row. A step need not be exact: the
-    /// cost at its end decides.
-    pub tolerance: f64,
 }
 
 /// Where a step leads.
@@ -244,8 +244,7 @@ impl StepProgram<'_> {
         let mut objective: Vec<f64> = layout.cost.iter().enumerate().map(of_set).collect();
         objective.extend(free.iter().map(|&p| slopes[p] / total));
         objective.extend(free.iter().map(|_| pull / total));
-        let tolerance = SOLVER_TOLERANCE * self.tolerance;
-        let found = solve_cone(&objective, &matrix, &bounds, tolerance)?.found;
+        let found = solve_cone(&objective, &matrix, &bounds, SOLVER_TOLERANCE)?.found;
         let value: f64 = found.iter().zip(&objective).map(|(x, w)| x * w).sum();
         let present: f64 = free.iter().map(|&p| slopes[p] * self.numbers[p]).sum();
         let held = (0..self.numbers.len()).filter(|p| !free.contains(p));
@@ -299,7 +298,7 @@ impl StepProgram<'_> {
         let (layout, moved) = (self.layout(), self.moved(unknowns));
         let known: HashSet<StepRow> = known.iter().copied().collect();
         let states = self.fit.settings.states.rows(2 * self.fit.joints());
-        let limit = self.tolerance * self.program.scale();
+        let limit = TOLERANCE * self.program.scale();
         type Worst = BTreeMap<(usize, usize, usize, bool), (f64, StepRow)>;
         let take = |worst: &mut Worst, key, excess: f64, row| {
             let entry = worst.entry(key).or_insert((excess, row));
