@@ -2,6 +2,7 @@
 
 mod abstraction;
 mod bad_input;
+mod beyond;
 mod browser;
 mod convert;
 mod defects;
