@@ -96,8 +96,8 @@ fn check(robot: &Robot, settings: &ArmourSettings) -> Result<(), ExportError> {
 ///
 /// Let M = A + L with the armatures A. A mass that differs by the ratio r changes a part of L that
 /// is positive semidefinite by at most r of it. An inertia I that differs by r in each entry
-/// changes ωᵀ I ω by at most r ‖|I|‖∞ |ω|², and link i of unit axes has |ω|² ≤ i |q̇|². With e the sum of
-/// these, (1 - r) L - e ≤ L' ≤ (1 + r) L + e.
+/// changes ωᵀ I ω by at most r ‖I‖∞ |ω|², and link i of unit axes has |ω|² ≤ i |q̇|². With e the
+/// sum of these, (1 - r) L - e ≤ L' ≤ (1 + r) L + e.
 fn mass_matrix_bounds(arm: &Arm, robot: &Robot, ratio: f64) -> Result<[f64; 2], ExportError> {
     let bodies = matches!(arm.robot.check_physical(), Ok(Physicality::Links { .. }));
     if ratio > 0.0 && !bodies {
