@@ -36,6 +36,7 @@ mod reach;
 pub mod result;
 pub mod search;
 mod sets;
+mod stiction;
 pub mod tube;
 mod weights;
 
@@ -61,4 +62,5 @@ pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
 pub use result::finding::Finding;
 pub use sets::UncertaintySets;
+pub use stiction::{Stiction, stiction};
 pub use tube::tube::Tube;
