@@ -34,7 +34,7 @@ impl Unseen<'_> {
         };
         let mut rows = Vec::new();
         let smallest = whole.smallest_from(&model, &others, &mut rows)?;
-        let cost = whole.smallest_from(&model, &all, &mut rows)?.cost;
+        let cost = whole.smallest_from(&model, &all, &mut rows)?.cost_by_time;
         let program = whole.program(&model, &own);
         let input_only = whole.settings.nominal == NominalStart::Own;
         let [_, input, both] = program.growth_factors(&smallest.sets);
@@ -50,7 +50,7 @@ impl Unseen<'_> {
         let unseen = UnseenMotion {
             motion: name,
             cost: Some(cost),
-            cost_without: Some(smallest.cost),
+            cost_without: Some(smallest.cost_by_time),
             growth,
             grown_cost: growth.map(|growth| program.cost(&smallest.sets.grown(growth, input_only))),
             outside: Some(outside),
