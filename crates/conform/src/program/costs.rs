@@ -152,7 +152,7 @@ mod tests {
         let uniform = times(101, 0.01);
         let jittered: Vec<f64> =
             uniform.iter().enumerate().map(|(k, t)| t + 4e-9 * (k % 3) as f64).collect();
-        near(&[uniform.clone()], 1.01);
+        near(std::slice::from_ref(&uniform), 1.01);
         near(&[uniform.clone(), jittered], 1.01);
         near(&[times(201, 0.005)], 1.005);
         near(&[uniform, times(201, 0.005)], 1.01);
