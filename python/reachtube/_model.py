@@ -50,8 +50,15 @@ class Model(Record):
         return cls(text)
 
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        """Write the model file. A file that exists is replaced with ``force=True`` only."""
-        write_new(Path(path), self._text, force=force)
+        """Write the model file. A file that exists is replaced with ``force=True`` only.
+
+        The bounds of a calibrated model count the other models in the folder that some of the same
+        recordings calibrated, as the command ``conform`` does.
+        """
+        text = self._text
+        if self._content.get("calibration") is not None:
+            text = _reachtube.among_others(text, fspath(path))
+        write_new(Path(path), text, force=force)
 
     def to_bytes(self) -> bytes:
         """Return the model file, whose format has a version."""
@@ -74,9 +81,15 @@ class Model(Record):
 
     @property
     def cost(self) -> float | None:
-        """Sum of the reachable set's widths over states and sample times; ``None`` where a set
-        was lost."""
+        """The reachable set's widths, summed over states and integrated over time; ``None`` where
+        a set was lost. Costs of a file without ``cost_of_samples`` are sums over samples."""
         return self._number("cost")
+
+    @property
+    def cost_of_samples(self) -> float | None:
+        """The cost as the paper sums it, over states and distinct sample times; ``None`` where a
+        set was lost, and for files of older versions."""
+        return self._number("cost_of_samples")
 
     @property
     def cost_lower_bound(self) -> float | None:

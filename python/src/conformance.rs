@@ -148,6 +148,13 @@ pub(crate) fn check_model(py: Python<'_>, text: String, origin: String) -> PyRes
     watched(py, None, move |_| Ok(Model::parse(&text, Path::new(&origin)).map(|_| ())?))
 }
 
+/// Returns the text of a model file whose bounds count the models in the folder of `path` that the
+/// same recordings calibrated.
+#[pyfunction]
+pub(crate) fn among_others(py: Python<'_>, text: String, path: PathBuf) -> PyResult<String> {
+    watched(py, None, move |_| Ok(Model::parse(&text, &path)?.0.among_others(&path).to_json()))
+}
+
 /// Sets what differs from a model's settings.
 pub(crate) fn differing(setup: Setup, mut given: Map<String, Value>) -> Result<Setup> {
     let (notion, until) = (take(&mut given, "notion")?, take(&mut given, "until")?);

@@ -242,7 +242,8 @@ def test_implausible_answers_are_warned_of(robot: rt.Robot) -> None:
 def test_the_papers_recordings_cost_what_the_command_finds(robot: rt.Robot) -> None:
     data = rt.Recordings.open(SCHUNK)
     found = rt.conform(robot, data, torque="compensated", suites=["A", "B", "D", "E"])
-    assert found.verified and round(float(found.cost or 0), 3) == 6048.048
+    assert found.verified and round(float(found.cost_of_samples or 0), 3) == 6048.048
+    assert round(float(found.cost or 0), 6) == 24.192192
 
 
 def test_the_schema_of_models_has_the_notions_and_the_choices() -> None:

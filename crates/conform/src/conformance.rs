@@ -35,10 +35,12 @@ use crate::tube::witness::Witness;
 pub struct Conformance {
     /// X0, U, V.
     pub sets: UncertaintySets,
-    /// Cost of the sets: Σ_k Σ_i s_i width_i(t_k) of the reachable set and the noise, at each
-    /// distinct sample time; suites whose sets differ count by their mean. Infinite where a set was
-    /// lost.
+    /// Cost of the sets: the integral over time of Σ_i s_i width_i of the reachable set and the
+    /// noise, by the time for which each sample stands; suites whose sets differ count by their
+    /// mean. Infinite where a set was lost.
     pub cost: f64,
+    /// The cost as the paper sums it: over distinct sample times, each of which counts 1.
+    pub cost_of_samples: f64,
     /// The dual objective of the program of a linear model: no sets cost less, to the solver's
     /// tolerance.
     pub lower_bound: Option<f64>,
@@ -174,7 +176,7 @@ fn judged(
     calibration: Option<Calibration>,
     allowance: Vec<f64>,
 ) -> Result<Conformance> {
-    let Found { tube, cost, lower_bound, optimality_gap, .. } = found;
+    let Found { tube, cost, cost_of_samples, lower_bound, optimality_gap, .. } = found;
     let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
     let LeftOutMotions { each: left_out, missing } = left_out;
     let mut tight = found.touching;
@@ -203,6 +205,7 @@ fn judged(
         usefulness: Usefulness::new(problem, &tube, &fit),
         nominal_explains: fit.explained,
         cost,
+        cost_of_samples,
         lower_bound,
         optimality_gap,
         paper_cost,

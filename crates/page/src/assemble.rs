@@ -7,7 +7,7 @@ use reachtube_conform::{Finding, Model};
 use reachtube_reach::Hyperrectangle;
 use reachtube_scalar::number::counted;
 
-use crate::cost::{cost_charts, cost_tables, cost_unit};
+use crate::cost::{cost_charts, cost_tables, cost_unit, sum_unit};
 use crate::error::Result;
 use crate::lead::lead;
 use crate::nominal::{nominal_facts, nominal_tables};
@@ -129,9 +129,11 @@ fn facts(model: &Model) -> Vec<(String, String)> {
     };
     let volume = model.hull_volume.map_or_else(|| "none".into(), |volume| format!("{volume:.4e}"));
     let cost_name = format!("Cost {}", cost_unit(model));
-    let paper_name = format!("The paper's sum (21) {}", cost_unit(model));
+    let samples_name = format!("Cost summed over samples, as in the paper {}", sum_unit(model));
+    let paper_name = format!("The paper's sum (21), with E for |E| {}", sum_unit(model));
     [
         (&*cost_name, cost),
+        (&samples_name, number(model.cost_of_samples)),
         (&paper_name, number(model.cost_paper)),
         ("Volume of the hull, eq. (2) [s times the states' SI units]", volume),
         ("Sets found by", word(settings.method)),

@@ -16,13 +16,23 @@ const EDGE: [u8; 3] = [140, 149, 159];
 /// Number of runs and of motions that are listed.
 const MOST_ROWS: usize = 20;
 
-/// Returns the unit of the cost, in brackets: it adds positions and velocities.
+/// Returns the unit of the costs of a model, in brackets. They add positions and velocities, and
+/// are integrals over time except in files of older versions.
 pub(super) fn cost_unit(model: &Model) -> String {
+    let unit = sum_unit(model);
+    match model.cost_of_samples {
+        Some(_) => format!("[s times {}]", unit.trim_matches(['[', ']'])),
+        None => unit,
+    }
+}
+
+/// Returns the unit of sums of widths over samples, in brackets.
+pub(super) fn sum_unit(model: &Model) -> String {
     let kinds = model.robot.kinds();
     let is_shared = kinds.iter().all(|kind| *kind == kinds[0]);
     match &model.settings.weights {
         Weights::Unit if is_shared && !kinds.is_empty() => {
-            format!("[{} + {}]", kinds[0].position_unit(), kinds[0].velocity_unit())
+            format!("[({} + {})]", kinds[0].position_unit(), kinds[0].velocity_unit())
         }
         Weights::Unit => "[SI units, added]".into(),
         Weights::Spread => "[parts of the spread, added]".into(),

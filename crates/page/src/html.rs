@@ -191,9 +191,9 @@ fn cost(page: &Page) -> Result<Markup, Error> {
     let svgs: String = page.cost_charts.iter().map(chart_svg).collect::<Result<_, _>>()?;
     Ok(html! {
         p {
-            (Explained("The cost is the sum of the set's widths over states and samples. It adds \
-                        rad to rad/s and grows with the number of samples, so it is compared only \
-                        within one data set."))
+            (Explained("The cost is the set's width, summed over states and integrated over time. \
+                        It adds rad to rad/s and grows with the length of the motions, so it is \
+                        compared only within one data set."))
         }
         div.charts { (PreEscaped(svgs)) }
         (text_tables(&page.cost))

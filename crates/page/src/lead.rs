@@ -130,7 +130,7 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
          widest at {horizon} s (vertical line), and the other joints (grey). Up to the red line, \
          {:.0} %, sets are useful. Other horizons were tried on up to 200 windows. The ratio may \
          be compared across horizons; the cost may not: it adds rad to rad/s and grows with the \
-         number of samples, so it is compared only within one data set.",
+         length of the motions, so it is compared only within one data set.",
         100.0 * most
     );
     let chart = Chart {

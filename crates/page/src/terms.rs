@@ -13,8 +13,8 @@ const TERMS: [(&str, &str); 21] = [
     ),
     (
         "cost",
-        "sum of the set's widths over states and samples; it adds rad to rad/s and grows with \
-              the number of samples, so it is compared only within one data set",
+        "the set's width, summed over states and integrated over time; it adds rad to rad/s and \
+              grows with the length of the motions, so it is compared only within one data set",
     ),
     ("deviation", "recorded state minus the nominal motion"),
     (

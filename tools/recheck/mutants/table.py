@@ -66,6 +66,7 @@ SETS = [
     ("U and X0 2 % larger, without costs", after(ROOMY, UNPRICED), 0),
     ("cost 0.1 % larger", entry("cost", by_part(1e-3)), 1),
     ("cost 1e-7 smaller", entry("cost", by_part(-1e-7)), 1),
+    ("sum over samples 1e-7 larger", entry("cost_of_samples", by_part(1e-7)), 1),
     ("lower bound 1e-7 larger", entry("cost_lower_bound", by_part(1e-7)), 1),
     ("lower bound 1 % smaller", entry("cost_lower_bound", by_part(-0.01)), 1),
     ("lower bound 1 % smaller, with its gap",

@@ -1,7 +1,9 @@
 """What the model file says of its sets: their cost, and that no sets cost less.
 
-The cost is the width of the reachable set with V, weighted and summed over states and distinct
-sample times (docs/method.md, section 5). It is computed again here.
+The cost is the width of the reachable set with V, weighted, summed over states and integrated over
+time: each sample counts the time that it stands for (docs/method.md, section 5). The paper's sum
+counts each distinct sample time as 1. Both are computed again here. A file without
+`cost_of_samples` is of an older version: all of its costs are such sums.
 
 That no sets cost less is proved by weak duality. The program is: least w r, for centres c, radii
 r >= 0 and rows E c + R r >= b. Multipliers y >= 0 of the rows are searched in doubles, among the
@@ -19,7 +21,7 @@ from dataclasses import dataclass
 import numpy
 
 from .balls import arb, arb_mat, column, down, magnitudes, symmetric
-from .grid import distinct
+from .grid import counted, distinct, stood_for
 from .hulls import extremes, state_name
 from .search import independent_rows, multipliers
 from .verdict import Tally, Verdict
@@ -47,13 +49,15 @@ class Costs:
     def __init__(self, model, cases):
         self.model, n = model, model.joints
         self.extremes = {id(case): extremes(case) for case in cases}
-        counts, grids = {}, distinct([case.grid for case in cases])
-        for grid in grids:
-            for t in grid.times:
-                counts[_nanoseconds(t)] = counts.get(_nanoseconds(t), 0) + 1
-        self.counts, self.grid = counts, None
-        self.sums = arb_mat(2 * n, 3 * n)
-        self.samples = arb(0)
+        grids = distinct([case.grid for case in cases])
+        self.is_by_time = model.stated["cost_of_samples"] is not None
+        self.shares = {id(grid): share for grid, share in zip(grids, counted(grids), strict=True)}
+        self.times = self.shares
+        if self.is_by_time:
+            self.times = {id(grid): t for grid, t in zip(grids, stood_for(grids), strict=True)}
+        self.grid = None
+        self.sums, self.sums_of_samples = arb_mat(2 * n, 3 * n), arb_mat(2 * n, 3 * n)
+        self.samples, self.count = arb(0), arb(0)
         self.largest = [0.0] * (2 * n)
         self.is_free = model.settings.get("noise", "none") == "fitted"
         self.rows, self.anchors, self.starts = [], [], [0.0] * (2 * n)
@@ -69,12 +73,14 @@ class Costs:
 
     def visit(self, sample, cases):
         """Adds the widths at one sample, and the rows that touch."""
-        share = arb(1) / self.counts[_nanoseconds(self.grid.times[sample.k])]
+        time, share = (of[id(self.grid)][sample.k] for of in (self.times, self.shares))
         n, e = self.model.joints, sample.e
         gains = arb_mat([[*map(abs, a), *k] for a, k in
                          zip(e.tolist(), sample.gain.tolist(), strict=True)])
-        self.sums = self.sums + gains * (2 * share)
-        self.samples = self.samples + share
+        self.sums = self.sums + gains * (2 * time)
+        self.samples = self.samples + time
+        self.sums_of_samples = self.sums_of_samples + gains * (2 * share)
+        self.count = self.count + share
         radii = column([*self.model.initial_set.radius, *self.model.input_set.radius])
         reach = gains * radii
         is_anchor = sample.k in {0, *(len(self.grid) * part // 4 for part in (1, 2, 3)),
@@ -120,6 +126,8 @@ class Costs:
         off = abs(cost - arb(stated["cost"]))
         tally.add(*_closer(room - off), f"cost {stated['cost']:.10g}, and {float(cost):.10g} here")
         self.facts.append(f"the sets cost {float(cost):.10g}")
+        if self.is_by_time:
+            self._judge_sum(tally, weights)
         lower, gap = stated["cost_lower_bound"], stated["optimality_gap"]
         if lower is None or stated["calibration"]:
             return tally
@@ -139,6 +147,19 @@ class Costs:
             apart = (abs(cost - arb(lower)) - room) / arb(max(abs(lower), 1e-300))
             tally.add(*_closer(arb(gap) + EQUAL - apart), f"gap {gap:.3g}")
         return tally
+
+    def _judge_sum(self, tally, weights):
+        """Judges the paper's sum that the file states."""
+        stated = self.model.stated["cost_of_samples"]
+        radii = [*self.model.initial_set.radius, *self.model.input_set.radius]
+        per_radius = (arb_mat(1, len(weights), weights) * self.sums_of_samples).entries()
+        found = sum((w * arb(r) for w, r in zip(per_radius, radii, strict=True)), arb(0))
+        found += sum((2 * self.count * w * arb(r)
+                      for w, r in zip(weights, self.model.noise_radius, strict=True)), arb(0))
+        room = EQUAL * found + EQUAL * self.count * sum(weights)
+        place = f"sum over samples {stated:.10g}, and {float(found):.10g} here"
+        tally.add(*_closer(room - abs(found - arb(stated))), place)
+        self.facts.append(f"summed over samples, as in the paper, {float(found):.10g}")
 
     def _weights(self):
         """The weight of each state, and the cost of each radius."""
@@ -239,7 +260,3 @@ def _closer(margin):
 def _row(m, i):
     width, entries = m.ncols(), m.entries()
     return entries[i * width : (i + 1) * width]
-
-
-def _nanoseconds(t):
-    return round(t * 1e9)

@@ -8,6 +8,8 @@ double nearest to the recorded time.
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
 
 from .balls import arb
 from .errors import BadInput
@@ -84,3 +86,47 @@ def distinct(grids):
         if not any(grid.is_prefix_of(longer) for longer in found):
             found.append(grid)
     return found
+
+
+def counted(grids):
+    """Returns how much each sample counts if the samples at one time together count 1."""
+    def place(t):
+        return round(t * 1e9)
+
+    counts = {}
+    for grid in grids:
+        for t in grid.times:
+            counts[place(t)] = counts.get(place(t), 0) + 1
+    return [[arb(1) / counts[place(t)] for t in grid.times] for grid in grids]
+
+
+def stood_for(grids):
+    """Returns the time that each sample stands for, s.
+
+    A sample stands for the time until halfway to its neighbours; the first and the last for as much
+    on their outer side. Grids share the times at which there are several of them. Times are counted
+    in half picoseconds.
+    """
+    lists = [[round(t * 1e12) for t in grid.times] for grid in grids]
+    only = min((t[1] - t[0] for t in lists if len(t) > 1), default=10**12)
+    cells = [_cells(times, only) for times in lists]
+    changes = sorted({edge for edges in cells for edge in (edges[0], edges[-1])})
+    counts = [sum(edges[0] <= at < edges[-1] for edges in cells) for at in changes]
+    found = []
+    for edges in cells:
+        times = []
+        for begin, end in pairwise(edges):
+            parts = (Fraction(min(end, to) - max(begin, at), count)
+                     for (at, to), count in zip(pairwise(changes), counts, strict=False)
+                     if count and at < end and to > begin)
+            time = sum(parts, Fraction(0)) / (2 * 10**12)
+            times.append(arb(time.numerator) / time.denominator)
+        found.append(times)
+    return found
+
+
+def _cells(times, only):
+    """Returns where the cells of samples begin and end, in half picoseconds."""
+    gaps = [b - a for a, b in pairwise(times)] or [only]
+    between = [a + b for a, b in pairwise(times)]
+    return [2 * times[0] - gaps[0], *between, 2 * times[-1] + gaps[-1]]

@@ -106,7 +106,8 @@ def _model(content, text):
         digest=digest,
         notes=() if digest == content["sha256"] else (CHANGED,),
         stated={key: content.get(key) for key in
-                ("cost", "cost_lower_bound", "optimality_gap", "calibration", "sensor_noise")},
+                ("cost", "cost_of_samples", "cost_lower_bound", "optimality_gap", "calibration",
+                 "sensor_noise")},
     )
     _check_settings(model.settings)
     return model

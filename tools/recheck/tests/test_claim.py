@@ -7,6 +7,7 @@ import pytest
 import toy
 
 from recheck.cli import main
+from recheck.grid import Grid, stood_for
 from recheck.search import independent_rows, nonnegative_least_squares
 
 
@@ -62,17 +63,19 @@ def smallest(tmp_path):
         rows = [f"{0.5 * k},{start[0] + q},0,0,0,0,0" for k in range(3)]
         text = "\n".join(["t,q1,q2,qd1,qd2,tau1,tau2", *rows, ""])
         (tmp_path / "data" / f"r{run}.csv").write_text(text)
-    # A position that is off stays so, and costs its width at each of three samples.
+    # A position that is off stays so, and costs its width at each of three samples, which stand for
+    # half a second each.
     model["initial_set"]["radius"][0] = 0.5
-    model |= {"cost": 3.0, "cost_lower_bound": 3.0, "optimality_gap": 0.0}
+    model |= {"cost": 1.5, "cost_of_samples": 3.0, "cost_lower_bound": 1.5, "optimality_gap": 0.0}
     toy.relist(tmp_path, model)
     return model
 
 
 @pytest.mark.parametrize(("changes", "expected"), [
-    ({}, 0), ({"cost": 3.0001}, 1), ({"cost_lower_bound": 2.9, "optimality_gap": 0.04}, 0),
-    ({"cost_lower_bound": 3.1, "optimality_gap": 0.1}, 1),
-    ({"cost_lower_bound": 2.9, "optimality_gap": 0.01}, 1),
+    ({}, 0), ({"cost": 1.50005}, 1), ({"cost_lower_bound": 1.45, "optimality_gap": 0.04}, 0),
+    ({"cost_of_samples": 3.0001}, 1),
+    ({"cost_lower_bound": 1.55, "optimality_gap": 0.1}, 1),
+    ({"cost_lower_bound": 1.45, "optimality_gap": 0.01}, 1),
 ])
 def test_cost_and_lower_bound_are_proved(tmp_path, capsys, changes, expected):
     model = smallest(tmp_path)
@@ -80,13 +83,33 @@ def test_cost_and_lower_bound_are_proved(tmp_path, capsys, changes, expected):
     code, found = judged(tmp_path, capsys)
     assert code == expected
     (fact,) = [fact for fact in found["claim"]["facts"] if "less than" in fact]
-    assert float(fact.split()[-1]) == pytest.approx(3.0, rel=1e-12)
+    assert float(fact.split()[-1]) == pytest.approx(1.5, rel=1e-12)
+
+
+def test_costs_of_older_files_are_sums_over_samples(tmp_path, capsys):
+    model = smallest(tmp_path)
+    del model["cost_of_samples"]
+    toy.relist(tmp_path, model | {"cost": 3.0, "cost_lower_bound": 3.0})
+    assert judged(tmp_path, capsys)[0] == 0
+    toy.relist(tmp_path, model)
+    assert judged(tmp_path, capsys)[0] == 1
+
+
+@pytest.mark.parametrize(("lists", "expected"), [
+    (([0.0, 0.5, 1.0],), [[0.5, 0.5, 0.5]]),
+    (([0.0, 1.0, 5.0],), [[1.0, 2.5, 4.0]]),
+    (([0.0],), [[1.0]]),
+    (([0.0, 0.5, 1.0], [0.0, 0.5]), [[0.25, 0.25, 0.5], [0.25, 0.25]]),
+])
+def test_a_sample_stands_for_the_time_to_halfway_to_its_neighbours(lists, expected):
+    found = stood_for([Grid(tuple(times), None) for times in lists])
+    assert [[float(t) for t in times] for times in found] == expected
 
 
 def test_sets_that_are_too_wide_are_not_the_smallest(tmp_path, capsys):
     model = smallest(tmp_path)
     model["initial_set"]["radius"][0] = 0.6
-    toy.relist(tmp_path, model | {"cost": 3.6, "cost_lower_bound": 3.6})
+    toy.relist(tmp_path, model | {"cost": 1.8, "cost_of_samples": 3.6, "cost_lower_bound": 1.8})
     code, found = judged(tmp_path, capsys)
     assert code == 2 and found["costs"][0]["undecided"] == 1
 

@@ -47,9 +47,13 @@ pub(crate) struct FitModel {
 }
 
 /// The smallest sets of one choice of the parameters.
+#[derive(Clone)]
 pub(crate) struct Smallest {
     pub sets: UncertaintySets,
+    /// The cost in mean steps, in which searches compare.
     pub cost: f64,
+    /// The cost, an integral over time.
+    pub cost_by_time: f64,
 }
 
 impl FitTask<'_> {
@@ -172,7 +176,8 @@ impl FitTask<'_> {
         let solution = program.solve_from(rows)?;
         let sets = program.repaired(&solution.sets);
         program.keep_close(rows, &sets, CLOSE);
-        Ok(Smallest { cost: program.cost(&sets), sets })
+        let cost = program.cost_in_steps(&sets);
+        Ok(Smallest { cost, cost_by_time: program.cost(&sets), sets })
     }
 
     /// Returns what a row must reach in `model`: the deviation, less the known noise.
@@ -200,7 +205,7 @@ impl FitTask<'_> {
         let whole = Self { stride: 1, ..self.clone() };
         let tracks = whole.tracks(None);
         match whole.model(numbers, &tracks, None) {
-            Ok(model) => Ok(Some(whole.smallest(&model, &tracks)?.cost)),
+            Ok(model) => Ok(Some(whole.smallest(&model, &tracks)?.cost_by_time)),
             Err(Error::RunsAway { .. }) => Ok(None),
             Err(error) => Err(error),
         }

@@ -8,7 +8,7 @@ use crate::data::settings::{Equations, Method, Weights};
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::data::Data;
-use crate::fit::evaluation::FitTask;
+use crate::fit::evaluation::{FitTask, Smallest};
 use crate::fit::group::{FitSettings, Group};
 use crate::fit::parameters::{FreeParameter, Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
@@ -105,7 +105,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     if let Err(error) = fitted.robot().check_physical() {
         return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
     }
-    let costs = [smallest_cost(steering)?, smallest_cost(&fitted)?];
+    let costs = [smallest(steering)?, smallest(&fitted)?];
     let left_out = Some(LeftOutMotions::from(&choice));
     let mut record = record(&fit, choice, Some(&found.numbers), costs)?;
     record.identified_calibrated_cost = calibrated_cost(problem);
@@ -195,11 +195,12 @@ impl Problem {
     }
 }
 
-/// The cost of the smallest sets of a linear model, as [`conform`](crate::conform) finds it.
-fn smallest_cost(problem: &Problem) -> Result<f64> {
+/// The smallest sets of a linear model, as [`conform`](crate::conform) finds them.
+fn smallest(problem: &Problem) -> Result<Smallest> {
     let program = Program::of_problem(problem)?;
-    let solution = program.solve()?;
-    Ok(program.cost(&program.repaired(&solution.sets)))
+    let sets = program.repaired(&program.solve()?.sets);
+    let cost = program.cost_in_steps(&sets);
+    Ok(Smallest { cost, cost_by_time: program.cost(&sets), sets })
 }
 
 /// The cost of a linear model's calibrated sets, where they are to be calibrated and can be.
@@ -224,7 +225,8 @@ fn linear_setup(setup: &Setup) -> Result<Setup> {
 
 /// Returns the record of a fit that was not taken.
 fn not_taken(fit: &FitTask, choice: PullChoice, steering: &Problem) -> Result<FitRecord> {
-    record(fit, choice, None, [smallest_cost(steering)?; 2])
+    let identified = smallest(steering)?;
+    record(fit, choice, None, [identified.clone(), identified])
 }
 
 /// Returns the record of a fit that found numbers, or that was not taken.
@@ -232,7 +234,7 @@ fn record(
     fit: &FitTask,
     choice: PullChoice,
     found: Option<&[f64]>,
-    [identified_cost, cost]: [f64; 2],
+    [identified, best]: [Smallest; 2],
 ) -> Result<FitRecord> {
     let setup = fit.parameters.setup();
     let groups = found.map_or_else(Vec::new, |_| choice.groups(fit.parameters));
@@ -240,7 +242,7 @@ fn record(
     let cost_without = |group: &Group| {
         let wanted = Wanted {
             left_out: None,
-            pull: choice.pull * identified_cost,
+            pull: choice.pull * identified.cost,
             held: [&choice.dropped[..], &[*group]].concat(),
             effort: SearchEffort::QUICK,
         };
@@ -263,8 +265,8 @@ fn record(
     let torque = before.into_iter().zip(after).enumerate();
     Ok(FitRecord {
         pull: choice.pull,
-        identified_cost,
-        cost,
+        identified_cost: identified.cost_by_time,
+        cost: best.cost_by_time,
         groups: groups.par_iter().map(cost_without).collect::<Result<_>>()?,
         dropped: choice.dropped,
         taken: found.is_some(),

@@ -174,14 +174,14 @@ impl StepProgram<'_> {
         let n = self.fit.joints();
         let of = |slope: &Slope| {
             let Some(reach) = &slope.reach else { return 0.0 };
-            let blocks = reach.iter().zip(&self.program.shares);
+            let blocks = reach.iter().zip(&self.program.parts);
             blocks
-                .map(|(reach, shares)| {
-                    let samples = reach.chunks_exact(2 * n).zip(shares);
+                .map(|(reach, parts)| {
+                    let samples = reach.chunks_exact(2 * n).zip(parts);
                     samples
-                        .map(|(rows, share)| {
+                        .map(|(rows, part)| {
                             let states = rows.iter().zip(&self.fit.weights);
-                            2.0 * share * states.map(|([_, r], s)| s * r).sum::<f64>()
+                            2.0 * part * states.map(|([_, r], s)| s * r).sum::<f64>()
                         })
                         .sum::<f64>()
                 })
@@ -217,7 +217,7 @@ impl StepProgram<'_> {
         }
         layout.restrict(self.fit.settings.centre, &mut matrix, &mut bounds, &unit);
         layout.limit(&self.fit.limits, &mut matrix, &mut bounds, &unit);
-        let total = self.smallest.cost.max(self.program.negligible_cost());
+        let total = self.smallest.cost.max(self.program.negligible_in_steps());
         let present = layout.unknowns(&self.smallest.sets);
         for (j, (here, w)) in present.iter().zip(&layout.cost).enumerate() {
             let most = self.trust * SET_TRUST * total / w;

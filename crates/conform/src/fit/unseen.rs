@@ -37,7 +37,7 @@ impl Unseen<'_> {
         };
         let mut rows = Vec::new();
         let smallest = whole.smallest_from(&model, &others, &mut rows)?;
-        let cost = whole.smallest_from(&model, &all, &mut rows)?.cost;
+        let cost = whole.smallest_from(&model, &all, &mut rows)?.cost_by_time;
         let program = whole.program(&model, &own);
         let input_only = whole.settings.nominal == NominalStart::Own;
         let [_, input, both] = program.growth_factors(&smallest.sets);
@@ -55,7 +55,7 @@ impl Unseen<'_> {
         let unseen = UnseenMotion {
             motion: name,
             cost: Some(cost),
-            cost_without: Some(smallest.cost),
+            cost_without: Some(smallest.cost_by_time),
             growth,
             initial_growth,
             input_growth,

@@ -62,11 +62,15 @@ pub struct Model {
     pub tool: String,
     /// Whether the sets were proved to enclose the recordings.
     pub verified: bool,
-    /// The cost of the sets: Σ_k Σ_i s_i times the width of the reachable set and the noise, over
-    /// all states and distinct sample times; the mean where suites have different sets. `None`
+    /// The cost of the sets: the integral over time of Σ_i s_i times the width of the reachable set
+    /// and the noise, over all states; the mean where suites have different sets. All costs of a
+    /// file without `cost_of_samples` are sums over samples, as versions before it wrote. `None`
     /// where a reachable set was lost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
+    /// The cost as the paper sums it: over distinct sample times, each of which counts 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cost_of_samples: Option<f64>,
     /// The solver's dual objective for a linear model: sets that satisfy the program cost no less,
     /// up to its tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -200,6 +204,7 @@ impl Model {
             tool: reachtube_files::TOOL.into(),
             verified: found.verdict.conformant,
             cost: finite(found.cost),
+            cost_of_samples: finite(found.cost_of_samples),
             cost_lower_bound: found.lower_bound,
             optimality_gap: found.optimality_gap,
             cost_paper: found.paper_cost,

@@ -216,10 +216,11 @@ pub(crate) fn not_smallest(
         Some(scale) => prove((problem, plant), claim, sets, scale)?,
         None => claim.judge(plant, sets, &Look::proof())?,
     };
-    let Costs { cost, paper, volume } = plant.costs(&tube)?;
+    let Costs { cost, of_samples, paper, volume } = plant.costs(&tube)?;
     Ok(Found {
         tube,
         cost,
+        cost_of_samples: of_samples,
         lower_bound: None,
         optimality_gap: None,
         paper_cost: paper,

@@ -1,6 +1,7 @@
 //! The smallest sets of a linear model: one linear program, and the repair of its answer.
 
 pub(crate) mod block;
+mod cost_of_sets;
 pub(crate) mod costs;
 pub(crate) mod cut;
 mod cut_rows;
@@ -8,7 +9,7 @@ pub(crate) mod layout;
 mod limits;
 mod of_problem;
 mod other_recordings;
-mod paper;
+pub(crate) mod paper;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod program;
 mod repair;

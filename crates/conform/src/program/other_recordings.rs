@@ -81,9 +81,9 @@ impl Program<'_> {
     #[must_use]
     pub(crate) fn with_every(&self, stride: usize) -> Self {
         let mut program = self.clone();
-        for (block, shares) in program.blocks.iter_mut().zip(&mut program.shares) {
+        for (block, parts) in program.blocks.iter_mut().zip(&mut program.parts) {
             block.times = block.times.iter().copied().step_by(stride).collect();
-            *shares = shares.iter().copied().step_by(stride).collect();
+            *parts = parts.iter().copied().step_by(stride).collect();
             let samples = block.coefficients.chunks_exact(self.shape.entries()).step_by(stride);
             block.coefficients = Arc::new(samples.flatten().copied().collect());
             block.envelope = Envelope::new(self.shape.states);

@@ -7,8 +7,9 @@
 //! -  (E_k c)_i + (R_k r)_i + r_v,i >= max d_i(t_k)
 //! - -(E_k c)_i + (R_k r)_i + r_v,i >= max -d_i(t_k)
 //!
-//! and the cost is Σ_k Σ_i s_i 2 ((R_k r)_i + r_v,i) over every distinct sample time, at which
-//! blocks count by their mean (docs/method.md, corrections A, E and F).
+//! and the cost is Σ_k w_k Σ_i s_i 2 ((R_k r)_i + r_v,i), where w_k is the time for which sample k
+//! stands, and blocks at one time count by their mean (docs/method.md, corrections A, E and F).
+//! Inside the program w_k is counted in mean steps.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -19,7 +20,7 @@ use crate::data::shape::Shape;
 use crate::data::side::Side;
 use crate::error::{Error, Result};
 use crate::program::block::Block;
-use crate::program::costs::{cost, shares};
+use crate::program::costs::{SampleTimes, cost};
 use crate::program::cut::Cut;
 use crate::program::layout::{Layout, Limits};
 use crate::program::solver::{FINE, Triplets, polished, solve_cone};
@@ -56,14 +57,18 @@ pub(crate) struct Program<'a> {
     pub(super) settings: &'a Settings,
     pub(super) shape: Shape,
     pub(super) blocks: Vec<Block>,
-    /// For each block and sample, how much its widths count.
-    pub(crate) shares: Vec<Vec<f64>>,
+    /// For each block and sample, the time for which it stands, in mean steps.
+    pub(crate) parts: Vec<Vec<f64>>,
+    /// The mean step, s.
+    pub(super) step: f64,
+    /// The weight of each state, s.
+    pub(super) weights: Vec<f64>,
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
     centre_bounds: Vec<[f64; 2]>,
     pub(super) limits: Limits,
-    /// Cost of each radius (r_x, r_u).
+    /// Cost of each radius (r_x, r_u), in mean steps.
     pub(crate) cost: Vec<f64>,
-    /// Cost of each noise radius.
+    /// Cost of each noise radius, in mean steps.
     pub(crate) noise_cost: Vec<f64>,
     /// Largest |d| in the checked states, at least the smallest normal number.
     pub(super) scale: f64,
@@ -97,13 +102,16 @@ impl<'a> Program<'a> {
         weights: &[f64],
         blocks: Vec<Block>,
     ) -> Self {
-        let shares = shares(blocks.iter().map(|block| block.times.as_slice()));
-        let (cost, noise_cost) = cost(shape, &blocks, &shares, weights);
+        let times = blocks.iter().map(|block| block.times.as_slice());
+        let SampleTimes { parts, step } = SampleTimes::new(times);
+        let (cost, noise_cost) = cost(shape, &blocks, &parts, weights);
         let mut program = Self {
             settings,
             shape,
             blocks,
-            shares,
+            parts,
+            step,
+            weights: weights.to_vec(),
             centre_bounds: Vec::new(),
             limits: Limits::default(),
             cost,
@@ -125,20 +133,6 @@ impl<'a> Program<'a> {
     #[must_use]
     pub(crate) fn with_limits(self, limits: Limits) -> Self {
         Self { limits, ..self }
-    }
-
-    /// Returns the cost of some sets.
-    #[must_use]
-    pub(crate) fn cost(&self, sets: &UncertaintySets) -> f64 {
-        let radii = sets.initial_set.radius.iter().chain(&sets.input_set.radius);
-        let noise = (0..self.shape.states).map(|i| self.noise_cost[i] * sets.noise_radius(i));
-        radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
-    }
-
-    /// Returns the cost of widths of 1e-9 rad or rad/s throughout, which are as good as none.
-    #[must_use]
-    pub(crate) fn negligible_cost(&self) -> f64 {
-        1e-9 * 0.5 * self.noise_cost.iter().sum::<f64>()
     }
 
     /// Returns the number of rows of the whole program, each side counted.
@@ -180,9 +174,10 @@ impl<'a> Program<'a> {
             }
             let (rows, generated) = (self.rows(), indices.len());
             for sets in candidates {
-                let gap =
-                    optimality_gap(self.repaired_cost(&sets), lower_bound, self.negligible_cost());
+                let negligible = self.negligible_in_steps();
+                let gap = optimality_gap(self.repaired_cost(&sets), lower_bound, negligible);
                 if best.as_ref().is_none_or(|(least, _)| gap < *least) {
+                    let lower_bound = self.step * lower_bound;
                     let solution = Solution { sets, lower_bound, rows, generated, rounds: round };
                     best = Some((gap, solution));
                 }
@@ -290,7 +285,7 @@ impl<'a> Program<'a> {
     }
 
     /// Solves with the rows `indices` only, with units for sets `near` the optimum where such are
-    /// known; returns the sets as found and polished, and the dual objective.
+    /// known; returns the sets as found and polished, and the dual objective in mean steps.
     fn solve_rows(
         &self,
         indices: &[RowIndex],
@@ -347,7 +342,7 @@ impl<'a> Program<'a> {
         (triplets, bounds)
     }
 
-    /// What known noise adds to every cost.
+    /// What known noise adds to every cost, in mean steps.
     fn fixed_cost(&self) -> f64 {
         match &self.settings.noise {
             Noise::Fixed(radii) => dot(radii, &self.noise_cost),

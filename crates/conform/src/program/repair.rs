@@ -4,9 +4,9 @@ use crate::program::program::{Program, ROUNDING, RowIndex, dot};
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {
-    /// Returns the cost of the sets once they satisfy every row.
+    /// Returns the cost of the sets, in mean steps, once they satisfy every row.
     pub(crate) fn repaired_cost(&self, sets: &UncertaintySets) -> f64 {
-        self.cost(&self.repaired(sets))
+        self.cost_in_steps(&self.repaired(sets))
     }
 
     /// Returns the sets with radii that are larger, so that every row holds up to rounding: all by
@@ -17,7 +17,7 @@ impl Program<'_> {
     pub(crate) fn repaired(&self, sets: &UncertaintySets) -> UncertaintySets {
         let scaled = sets.inflated(self.worst_ratio(sets), 0.0);
         let widened = self.widened(sets);
-        if self.cost(&widened) < self.cost(&scaled) { widened } else { scaled }
+        if self.cost_in_steps(&widened) < self.cost_in_steps(&scaled) { widened } else { scaled }
     }
 
     /// The sets with radii that are larger by terms of the same cost, but for radii that have a

@@ -15,7 +15,8 @@ impl Program<'_> {
     pub(crate) fn units(&self, layout: &Layout, near: Option<&UncertaintySets>) -> Vec<f64> {
         let largest = layout.cost.iter().copied().fold(0.0, f64::max);
         let cheapest = |sets: &UncertaintySets| {
-            NEGLIGIBLE_PART * self.cost(sets).max(self.negligible_cost()) / self.scale
+            let cost = self.cost_in_steps(sets).max(self.negligible_in_steps());
+            NEGLIGIBLE_PART * cost / self.scale
         };
         let unit = |(j, w): (usize, &f64)| {
             let unit = match near {

@@ -98,13 +98,13 @@ pub(super) fn bisect(
     }
     let sets = claim.widen(state.sets, progress)?;
     let tube = claim.judge(&plant, &sets, &Look::proof())?;
-    let Costs { cost, volume, .. } = plant.costs(&tube)?;
+    let Costs { cost, of_samples, volume, .. } = plant.costs(&tube)?;
     let reachable_sets = state.reachable_sets + 1;
-    let search =
-        SearchSummary { rounds: 1, reachable_sets, linearised_cost: None, runs_away: None };
+    let search = SearchSummary { rounds: 1, reachable_sets, ..SearchSummary::default() };
     Ok(Found {
         tube,
         cost,
+        cost_of_samples: of_samples,
         lower_bound: None,
         optimality_gap: None,
         paper_cost: None,

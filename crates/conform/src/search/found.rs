@@ -14,6 +14,8 @@ pub(crate) struct Found {
     pub tube: Tube,
     /// The cost of the sets.
     pub cost: f64,
+    /// The cost as the paper sums it over distinct sample times.
+    pub cost_of_samples: f64,
     /// No sets cost less, for a linear model.
     pub lower_bound: Option<f64>,
     /// How far the cost may be above the least, relative to the bound, for a linear model.
@@ -56,16 +58,19 @@ impl Deciding {
 }
 
 /// How the sets of a model that is not linear were found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SearchSummary {
     /// Number of linearisations, each with its program.
     pub rounds: usize,
     /// How often the reachable sets of all suites were computed.
     pub reachable_sets: usize,
-    /// The cost of the linearised sets, Σ_k Σ_i s_i 2 (R_k r)_i, which the programs minimise.
+    /// The cost of the linearised sets, Σ_k w_k Σ_i s_i 2 (R_k r)_i, which the programs minimise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub linearised_cost: Option<f64>,
+    /// The cost of the linearised sets as the paper sums it over distinct sample times.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub linearised_cost_of_samples: Option<f64>,
     /// The case and the time (s) at which a simulated motion under the last sets but one left every
     /// bound.
     #[serde(default, skip_serializing_if = "Option::is_none")]

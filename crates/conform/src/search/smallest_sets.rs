@@ -79,21 +79,23 @@ fn finish<'a>(
         Some(_) => claim.judge(plant, &sets, &Look::proof())?,
         None => prove((problem, plant), claim, &sets, program.scale())?,
     };
-    let Costs { cost, paper, volume } = plant.costs(&tube)?;
+    let Costs { cost, of_samples, paper, volume } = plant.costs(&tube)?;
     let gap = optimality_gap(cost, lower_bound, program.negligible_cost());
-    let summary = SearchSummary {
+    let summary = || SearchSummary {
         rounds: state.rounds,
         reachable_sets: state.reachable_sets,
         linearised_cost: Some(program.cost(&state.sets)),
+        linearised_cost_of_samples: Some(program.paper_sums(&state.sets).of_samples),
         runs_away: round.runs_away,
     };
     let found = Found {
         cost,
+        cost_of_samples: of_samples,
         lower_bound: is_exact.then_some(lower_bound),
         optimality_gap: is_exact.then_some(gap),
         paper_cost: paper,
         hull_volume: volume,
-        search: (!is_exact).then_some(summary),
+        search: (!is_exact).then(summary),
         left_out: LeftOutMotions::default(),
         deciding: match claim.tolerance() {
             _ if !is_exact => Deciding::Rows(program.tight(&tube.sets).into_iter().collect()),

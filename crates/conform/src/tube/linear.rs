@@ -10,6 +10,7 @@ use reachtube_scalar::Interval;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::program::cut::Cut;
+use crate::program::paper::PaperSums;
 use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 use crate::tube::direction::Direction;
@@ -149,8 +150,8 @@ impl Plant for Linear<'_> {
 
     fn costs(&self, tube: &Tube) -> Result<Costs> {
         let program = self.program()?;
-        let (paper, volume) = program.paper_sums(&tube.sets);
-        Ok(Costs { cost: program.cost(&tube.sets), paper: Some(paper), volume })
+        let PaperSums { of_samples, signed, volume } = program.paper_sums(&tube.sets);
+        Ok(Costs { cost: program.cost(&tube.sets), of_samples, paper: Some(signed), volume })
     }
 }
 

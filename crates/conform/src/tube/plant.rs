@@ -54,13 +54,24 @@ pub(crate) struct Round<'a> {
 
 /// What reachable sets cost; infinite where a set was lost.
 pub(crate) struct Costs {
-    /// Σ_k Σ_i s_i width_i(t_k) of the sets with the noise set, where strands at one time count by
-    /// their mean.
+    /// The integral over time of Σ_i s_i width_i of the sets with the noise set, where strands at
+    /// one time count by their mean.
     pub cost: f64,
+    /// The same as a sum over distinct sample times, each of which counts 1, as in the paper.
+    pub of_samples: f64,
     /// The paper's sum (21), for a linear model.
     pub paper: Option<f64>,
     /// Σ_k Δt Π_i width_i(t_k), eq. (2) of the paper.
     pub volume: f64,
+}
+
+impl Costs {
+    /// The costs of no set.
+    pub(crate) const NONE: Self = Self { cost: 0.0, of_samples: 0.0, paper: None, volume: 0.0 };
+
+    /// The costs where a set was lost.
+    pub(crate) const LOST: Self =
+        Self { cost: f64::INFINITY, of_samples: f64::INFINITY, paper: None, volume: f64::INFINITY };
 }
 
 /// What looks at each slice while reachable sets are computed.

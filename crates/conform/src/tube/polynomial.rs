@@ -10,7 +10,7 @@ use reachtube_reach::{Flowpipe, GeneratorRows, Zonotope};
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::program::costs::shares;
+use crate::program::costs::{SampleTimes, distinct_shares};
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::{Effort, attempt, furthest};
 use crate::tube::judged::{At, Judged};
@@ -97,20 +97,25 @@ impl Plant for Polynomial<'_> {
 
     fn costs(&self, tube: &Tube) -> Result<Costs> {
         let weights = weights(self.problem)?;
-        let shares = shares(tube.strands.iter().map(|strand| strand.times.times()));
-        let mut costs = Costs { cost: 0.0, paper: None, volume: 0.0 };
-        for (strand, shares) in tube.strands.iter().zip(&shares) {
-            let (times, flowpipe) = (strand.times.times(), flowpipe(strand));
-            for (k, share) in shares.iter().enumerate() {
+        let times = tube.strands.iter().map(|strand| strand.times.times());
+        let (shares, SampleTimes { parts, step }) =
+            (distinct_shares(times.clone()), SampleTimes::new(times));
+        let mut costs = Costs::NONE;
+        for ((strand, shares), parts) in tube.strands.iter().zip(&shares).zip(&parts) {
+            let flowpipe = flowpipe(strand);
+            for (k, (share, part)) in shares.iter().zip(parts).enumerate() {
                 if k >= flowpipe.len() {
-                    return Ok(Costs { cost: f64::INFINITY, paper: None, volume: f64::INFINITY });
+                    return Ok(Costs::LOST);
                 }
                 let widths = flowpipe.sample(k).iter().map(|hull| hull.width()).enumerate();
                 let widths = widths.map(|(i, width)| width + 2.0 * tube.sets.noise_radius(i));
                 let weighted = widths.clone().zip(&weights).map(|(width, weight)| weight * width);
-                costs.cost += share * weighted.sum::<f64>();
-                let next = times.get(k + 1).unwrap_or(&times[k]);
-                costs.volume += share * widths.product::<f64>() * (next - times[k]);
+                let (weighted, time) = (weighted.sum::<f64>(), part * step);
+                costs.cost += time * weighted;
+                costs.of_samples += share * weighted;
+                if k + 1 < parts.len() {
+                    costs.volume += time * widths.product::<f64>();
+                }
             }
         }
         Ok(costs)

@@ -57,7 +57,7 @@ fn sets_cost_no_more_than_the_disturbances_that_were_there() {
             let e: f64 = propagation.exponential(k).iter().map(|x| 2.0 * start * x.mag()).sum();
             e + gains[k].iter().map(|x| 2.0 * input * x.mag()).sum::<f64>()
         };
-        (0..80).map(at).sum::<f64>()
+        0.01 * (0..80).map(at).sum::<f64>()
     };
     assert!(found.cost <= truth(0.02, 0.5), "{} > {}", found.cost, truth(0.02, 0.5));
     assert!(found.cost > 0.2 * truth(0.01, 0.5));
@@ -109,6 +109,7 @@ fn one_sample_is_its_own_hull() {
     write_data_set(folder.path(), &[("a", runs.to_vec())]);
     let (_, found) = run(&two_joints(), folder.path(), &Settings::new(Torque::Compensated, 2));
     assert!(found.verdict.conformant);
+    // A sample without a neighbour stands for 1 s.
     assert!((found.cost - (0.4 + 0.2 + 0.4)).abs() < 1e-9, "{}", found.cost);
     for (radius, exact) in found.sets.initial_set.radius.iter().zip([0.2, 0.1, 0.2, 0.0]) {
         assert!((radius - exact).abs() < 1e-9);
@@ -124,6 +125,41 @@ fn recordings_of_the_model_itself_need_sets_of_rounding_only() {
     write_data_set(folder.path(), &[("a", vec![exact.record(&mut Random(1))])]);
     let (_, found) = run(&robot, folder.path(), &Settings::new(Torque::Compensated, 2));
     assert!(found.verdict.conformant && found.cost < 1e-10, "{}", found.cost);
+}
+
+/// A data set of four runs at other times: every how many samples, and how far each run's times are
+/// off, s.
+fn resampled(every: usize, off: f64) -> Conformance {
+    let folder = tempfile::tempdir().unwrap();
+    let (robot, times, mut random) = (two_joints(), grid(0.005, 161), Random(7));
+    let arm = Disturbed { robot: &robot, times: &times, start: 0.02, input: 0.5 };
+    let at = |run: usize| {
+        let Recorded { times, states, .. } = arm.record(&mut random);
+        let jitter = |k: usize| off * ((7 * k + 3 * run) % 5) as f64;
+        let kept = || (0..times.len()).step_by(every);
+        Recorded {
+            times: kept().map(|k| times[k] + if k > 0 { jitter(k) } else { 0.0 }).collect(),
+            states: kept().flat_map(|k| states[4 * k..4 * k + 4].to_vec()).collect(),
+            torques: vec![0.0; 2 * kept().count()],
+        }
+    };
+    let runs: Vec<Recorded> = (0..4).map(at).collect();
+    write_data_set(folder.path(), &[("a", runs)]);
+    let settings =
+        Settings { disturbance: Disturbance::Constant, ..Settings::new(Torque::Compensated, 2) };
+    run(&robot, folder.path(), &settings).1
+}
+
+#[test]
+fn the_cost_depends_neither_on_the_sample_rate_nor_on_jitter_of_the_stamps() {
+    let (usual, half, jittered) = (resampled(1, 0.0), resampled(2, 0.0), resampled(1, 1e-9));
+    assert!((half.cost / usual.cost - 1.0).abs() < 0.03, "{} for {}", half.cost, usual.cost);
+    assert!(half.cost_of_samples < 0.6 * usual.cost_of_samples);
+    let change = jittered.cost / usual.cost - 1.0;
+    assert!(change.abs() < 1e-3, "{} for {}", jittered.cost, usual.cost);
+    // The paper's sum counts the runs' times one by one.
+    assert!(jittered.cost_of_samples > 1.5 * usual.cost_of_samples);
+    assert!((usual.cost_of_samples * 0.005 / usual.cost - 1.0).abs() < 1e-12);
 }
 
 /// Every row handed at once to a simplex solver that shares nothing with the program.
@@ -152,11 +188,9 @@ fn row_generation_finds_the_optimum_of_the_whole_program() {
                 let simplex = whole_program(&robot, &data, &settings);
                 let case = format!("{disturbance:?} {centre:?} {:?}", settings.noise);
                 assert!(found.verdict.conformant, "{case}");
-                assert!(
-                    (found.cost / simplex - 1.0).abs() < 1e-7,
-                    "{case}: {} for {simplex}",
-                    found.cost
-                );
+                for cost in [found.cost / 0.02, found.cost_of_samples] {
+                    assert!((cost / simplex - 1.0).abs() < 1e-7, "{case}: {cost} for {simplex}");
+                }
             }
         }
     }

@@ -54,8 +54,10 @@ pub struct Table2Case {
     pub disturbance: Disturbance,
     /// Whether the recordings were proved to be enclosed.
     pub conformant: bool,
-    /// Σ_k Σ_i width_i(t_k) of the reachable sets.
+    /// The integral over time of Σ_i width_i of the reachable sets.
     pub cost: f64,
+    /// Σ_k Σ_i width_i(t_k) of the reachable sets, as the paper sums them.
+    pub cost_of_samples: f64,
     /// No sets cost less.
     pub lower_bound: Option<f64>,
     /// X0 and U.
@@ -157,6 +159,7 @@ impl FoundCase {
             disturbance: settings.disturbance,
             conformant: found.verdict.conformant,
             cost: found.cost,
+            cost_of_samples: found.cost_of_samples,
             lower_bound: found.lower_bound,
             sets: found.sets.clone(),
             warnings: found.warnings.iter().map(|warning| warning.text.clone()).collect(),

@@ -83,9 +83,10 @@ impl Table2Case {
         let proved = if self.conformant { "proved" } else { "NOT PROVED" };
         TextTable {
             title: format!(
-                "{}, {notion}, {disturbance}: {proved}, cost {}",
+                "{}, {notion}, {disturbance}: {proved}, cost {} ({} summed over samples)",
                 self.name(),
-                four_decimals(self.cost)
+                four_decimals(self.cost),
+                four_decimals(self.cost_of_samples)
             ),
             header: header.map(String::from).to_vec(),
             rows: (0..6).map(row).collect(),

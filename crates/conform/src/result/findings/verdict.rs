@@ -270,13 +270,21 @@ impl Finding {
             }
             (None, None) => String::new(),
         };
+        // Files of versions before the cost by time have sums over samples alone.
+        let sum = match model.cost_of_samples {
+            Some(sum) => format!(
+                "integrated over time; summed over samples, as in the paper: {}",
+                four_decimals(sum)
+            ),
+            None => "summed over samples".into(),
+        };
         let text = format!(
-            "cost {}{quality}: weighted widths of the reachable sets, summed over states and \
-             samples",
+            "cost {}{quality}: weighted widths of the reachable sets, summed over states and {sum}",
             four_decimals(cost)
         );
         Self::new(Severity::Info, Code::Cost, text)
             .with("cost", cost)
+            .with("cost_of_samples", model.cost_of_samples.unwrap_or(f64::NAN))
             .with("lower_bound", model.cost_lower_bound.unwrap_or(f64::NAN))
     }
 
