@@ -4,6 +4,7 @@ use reachtube_conform::result::Table;
 use reachtube_scalar::number::{at_least, outward};
 
 use crate::body::body::Body;
+use crate::report_stops::{stop_verdict, triggers};
 use crate::scene::scenario::Scene;
 use crate::verdict::decide::Advice;
 use crate::verdict::verification::{Answer, Verification};
@@ -12,18 +13,47 @@ use crate::verdict::verification::{Answer, Verification};
 /// do next.
 #[must_use]
 pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> String {
-    let mut order: Vec<&Verification> = all.iter().collect();
-    let smallest = |v: &Verification| v.clearances.first().map_or(f64::INFINITY, |c| c.distance);
-    order.sort_by(|a, b| b.answer.cmp(&a.answer).then(smallest(a).total_cmp(&smallest(b))));
+    let order = worst_first(all);
     let mut lines: Vec<String> =
         order.first().map(|worst| verdict(worst, scene)).into_iter().collect();
     lines.push(String::new());
-    let header = ["motion", "answer", "closest link", "obstacle", "proved distance [m]", "at [s]"];
-    lines.push(Table::new(header, order.iter().map(|v| row(v)).collect()).to_string());
-    lines.push(margins(all, body));
+    lines.push(motions(&order).to_string());
+    lines.extend(triggers(all).map(|(table, words)| format!("{table}{words}\n")));
+    lines.push(margins(all, body).to_string());
     let advice: Vec<String> = order.iter().filter_map(|v| next(v)).collect();
     lines.extend(advice.into_iter().take(3));
     lines.join("\n").trim_end().to_string() + "\n"
+}
+
+/// Returns the verdicts with the worst first: unsafe before undecided before safe, and then by the
+/// smallest proved distance.
+#[must_use]
+pub fn worst_first(all: &[Verification]) -> Vec<&Verification> {
+    let smallest = |v: &Verification| {
+        let motion = v.clearances.first().map(|pair| pair.distance);
+        let stop = v.stops.as_ref().and_then(|stops| Some(stops.clearances.first()?.distance));
+        motion.into_iter().chain(stop).fold(f64::INFINITY, f64::min)
+    };
+    let mut order: Vec<&Verification> = all.iter().collect();
+    order.sort_by(|a, b| b.answer.cmp(&a.answer).then(smallest(a).total_cmp(&smallest(b))));
+    order
+}
+
+/// Returns the verdict about the worst motion as a sentence, and tables of the motions with the
+/// worst first, of the stops and of the margins.
+#[must_use]
+pub fn summary(all: &[Verification], body: &Body, scene: &Scene) -> (String, Vec<Table>) {
+    let order = worst_first(all);
+    let sentence = order.first().map_or_else(String::new, |worst| verdict(worst, scene));
+    let stops = triggers(all).map(|(table, _)| table);
+    let first = Table { title: "motions, the worst first".into(), ..motions(&order) };
+    let tables = [first].into_iter().chain(stops).chain([margins(all, body)]);
+    (sentence, tables.collect())
+}
+
+fn motions(order: &[&Verification]) -> Table {
+    let header = ["motion", "answer", "closest link", "obstacle", "proved distance [m]", "at [s]"];
+    Table::new(header, order.iter().map(|v| row(v)).collect())
 }
 
 /// Returns the verdict about the worst motion as a sentence.
@@ -33,6 +63,9 @@ fn verdict(worst: &Verification, scene: &Scene) -> String {
         clearance => format!(" more than {clearance} m"),
     };
     let case = &worst.case;
+    if let Some(sentence) = stop_verdict(worst, &keep) {
+        return sentence;
+    }
     match (worst.answer, worst.clearances.first(), &worst.closest) {
         (Answer::Unsafe, _, Some(found)) => {
             let how = match found.distance {
@@ -87,7 +120,7 @@ fn row(v: &Verification) -> Vec<String> {
 }
 
 /// Returns the largest margin of each link as a table.
-fn margins(all: &[Verification], body: &Body) -> String {
+fn margins(all: &[Verification], body: &Body) -> Table {
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut links: Vec<usize> = body.capsules().iter().map(|capsule| capsule.joint).collect();
     links.sort_unstable();
@@ -110,7 +143,6 @@ fn margins(all: &[Verification], body: &Body) -> String {
         title: "margins: how far a link can be from its nominal motion".into(),
         ..Table::new(["link of", "margin [m]", "motion", "at [s]"], rows)
     }
-    .to_string()
 }
 
 /// Returns what would decide an open question, as a sentence.
@@ -140,7 +172,7 @@ fn next(v: &Verification) -> Option<String> {
 }
 
 /// Formats a proved distance with four decimals, rounded down.
-fn lower(distance: f64) -> String {
+pub(crate) fn lower(distance: f64) -> String {
     let [low, _] = outward([distance, distance], 4);
     low
 }

@@ -63,9 +63,19 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     };
     let opened = OpenedCheck::with(model, setup, &data, None, Keep::Needed)?;
     opened.print_notes(&data);
+    let stop = scenario.stop(&robot, &opened.tube().sets.input_set)?;
     let all = {
         let _bar = Progress::new();
-        verify(&opened.problem, opened.tube(), &body, &scene)?
+        let all = verify(&opened.problem, opened.tube(), &body, &scene)?;
+        match &stop {
+            None => all,
+            Some(rule) => {
+                let stopped = all
+                    .into_iter()
+                    .map(|one| one.with_stops(opened.problem.robot(), (&body, &scene), rule));
+                stopped.collect()
+            }
+        }
     };
     write_files(&args.out, &all, &body, &scene)?;
     let outcome = outcome(&all);
@@ -139,6 +149,7 @@ fn value(all: &[Verification], body: &Body) -> Value {
             "margins": one.margins.iter().map(margin).collect::<Vec<_>>(),
             "closest": one.closest,
             "advice": one.advice,
+            "stops": one.stops,
             "lost": one.lost,
         })
     };

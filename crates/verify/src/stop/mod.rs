@@ -9,6 +9,7 @@ pub(crate) mod deceleration;
 mod extension;
 pub(crate) mod path;
 pub(crate) mod recorded;
+pub(crate) mod rule;
 #[expect(clippy::module_inception, reason = "the stop is the concept of this folder")]
 pub(crate) mod stop;
 pub(crate) mod study;

@@ -4,5 +4,6 @@ pub(crate) mod clearance;
 pub(crate) mod decide;
 mod gradient;
 mod part_of_step;
+pub(crate) mod stops;
 pub(crate) mod verification;
 pub(crate) mod witness;
