@@ -14,6 +14,7 @@ mod opened;
 mod option_values;
 mod outcome;
 mod output;
+mod planned;
 mod progress;
 mod reference;
 mod renamed;

@@ -12,6 +12,7 @@ use reachtube::recordings::DataSet;
 use crate::data_arguments::{DataArguments, ModelArguments, gap_limit};
 use crate::error::{Error, Result};
 use crate::output;
+use crate::planned::Planned;
 use crate::progress::Progress;
 
 /// A model, the recordings read with its settings, and its reachable sets over them.
@@ -58,6 +59,7 @@ impl OpenedCheck {
             .map(|known| prepared(&model, known, std::slice::from_ref(&args.data)));
         let job = match prepared.transpose()? {
             Some(windows) => CheckJob::new(model, setup, windows),
+            None if args.data.is_file() => CheckJob::new(model, setup, Planned::of(&args.data)),
             None => CheckJob::new(model, setup, DataSet::open(&args.data)?),
         };
         let job = job

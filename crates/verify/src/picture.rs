@@ -30,7 +30,8 @@ const KEY: &str = "grey: all motions of the model; orange: the worst stop; blue:
 ///
 /// Grey is what the links sweep on all motions of the model; blue is the nominal motion at the time
 /// of the smallest proved distance; red is the simulated motion that comes closest, if one was
-/// sought. Orange is what the links sweep over the stop that comes closest. Obstacles are brown, as they are at that time.
+/// sought. Orange is what the links sweep over the stop that comes closest. Obstacles are brown, as
+/// they are at that time.
 #[must_use]
 pub fn picture(verification: &Verification, body: &Body, scene: &Scene) -> String {
     let Verification { reach, clearances, closest, .. } = verification;

@@ -1,10 +1,10 @@
 //! Verdicts as text.
 
 use reachtube_conform::result::Table;
-use reachtube_scalar::number::{at_least, outward};
+use reachtube_scalar::number::at_least;
 
 use crate::body::body::Body;
-use crate::report_stops::{stop_verdict, triggers};
+use crate::report_stops::{lower, stop_verdict, triggers};
 use crate::scene::scenario::Scene;
 use crate::verdict::decide::Advice;
 use crate::verdict::verification::{Answer, Verification};
@@ -169,10 +169,4 @@ fn next(v: &Verification) -> Option<String> {
              for a model that is not linear."
         ),
     })
-}
-
-/// Formats a proved distance with four decimals, rounded down.
-pub(crate) fn lower(distance: f64) -> String {
-    let [low, _] = outward([distance, distance], 4);
-    low
 }

@@ -1,9 +1,8 @@
 //! Verdicts about stops as text.
 
 use reachtube_conform::result::Table;
-use reachtube_scalar::number::at_least;
+use reachtube_scalar::number::{at_least, outward};
 
-use crate::report::lower;
 use crate::verdict::stops::{MotionStops, TriggerDistance};
 use crate::verdict::verification::{Answer, Verification};
 
@@ -100,4 +99,10 @@ pub(crate) fn triggers(all: &[Verification]) -> Option<(Table, String)> {
         );
     }
     Some((table, text))
+}
+
+/// Formats a proved distance with four decimals, rounded down.
+pub(crate) fn lower(distance: f64) -> String {
+    let [low, _] = outward([distance, distance], 4);
+    low
 }

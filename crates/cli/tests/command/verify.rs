@@ -41,7 +41,7 @@ fn a_far_obstacle_is_safe_with_a_proved_distance_and_a_picture() {
     let run = verify(&lab, "", &obstacle(FAR), "").exits(0);
     assert!(run.stdout.starts_with("safe: on every motion of the model"), "{}", run.stdout);
     assert!(run.stdout.contains("margin [m]"), "{}", run.stdout);
-    assert_eq!(lab.names("cell"), ["A.svg", "B.svg"]);
+    assert_eq!(lab.names("cell"), ["A.svg", "B.svg", "verify.html"]);
     let picture = lab.read("cell/A.svg");
     assert!(picture.starts_with("<svg") && picture.contains("Written by reachtube"));
     let json = verify(&lab, "", &obstacle(FAR), "--json").exits(0).json();
@@ -61,7 +61,7 @@ fn a_motion_that_touches_is_a_witness() {
         "{}",
         run.stdout
     );
-    assert_eq!(lab.names("cell"), ["A.svg", "A_closest.csv"]);
+    assert_eq!(lab.names("cell"), ["A.svg", "A_closest.csv", "verify.html"]);
     let json = verify(&lab, "suites = [\"A\"]", &obstacle(IN_THE_WAY), "--json").exits(1).json();
     fits("verify", &json);
     let closest = &json["motions"][0]["closest"];
@@ -234,4 +234,19 @@ fn a_wrong_stop_is_refused_with_its_line() {
     fails("category = 2", &["category = 2", "0 or 1"]);
     fails("distance = 0", &["distance = 0", "above 0, in m"]);
     fails("speed = 1", &["unknown field `speed`", "docs/verify.md"]);
+}
+
+#[test]
+fn a_planned_motion_is_one_file() {
+    let lab = lab();
+    let recorded = lab.names("data").into_iter().find(|name| name.starts_with("A")).unwrap();
+    lab.write("plan.csv", lab.read(&format!("data/{recorded}")));
+    let it = obstacle(FAR);
+    lab.write(
+        "cell.toml",
+        format!("model = \"model.json\"\ndata = \"plan.csv\"\ncapsules = \"capsules.toml\"\n{it}"),
+    );
+    let json = lab.run("verify cell.toml --out cell --force --json").exits(0).json();
+    assert_eq!(json["motions"].as_array().unwrap().len(), 1);
+    assert!(json["motions"][0]["case"].as_str().unwrap().contains("plan"), "{json}");
 }

@@ -13,7 +13,6 @@ use crate::stop::path::Path;
 use crate::stop::rule::StopRule;
 use crate::stop::stop::Stop;
 use crate::verdict::clearance::{Memory, Search};
-use crate::verdict::verification::{Answer, Verification};
 
 /// Number of steps of a stop whose hull is tried first.
 const STEPS: usize = 8;
@@ -82,51 +81,13 @@ struct FromSample {
     time: f64,
 }
 
-impl Verification {
-    /// Adds the stops of a scenario: the answer then holds for the motion up to the stop and for
-    /// the stop from each sample until standstill. Obstacles go on growing meanwhile.
-    ///
-    /// If a stop is triggered at a distance d, the sample before has each link further than d from
-    /// each obstacle. So a link that moves by w until standstill, in the time T from that sample,
-    /// stays more than d - w - vT away from an obstacle with the speed v. The larger of this
-    /// and the distance from the obstacle as the scenario has it counts.
+impl MotionStops {
+    /// Follows the stops from all samples of a reachable set.
     ///
     /// # Guarantee
     ///
-    /// Safe is proved with directed rounding, for every motion of the model and every stop by the
-    /// robot's equations, as [`Category::stop`](crate::Category::stop). A motion without a stop that touches is a witness
-    /// if a stop may begin at any sample, as it may then begin at none.
-    ///
-    /// # Panics
-    ///
-    /// Panics if robot, body or brakes have another number of joints.
-    #[must_use]
-    pub fn with_stops(
-        mut self,
-        robot: &Robot,
-        (body, scene): (&Body, &Scene),
-        rule: &StopRule,
-    ) -> Self {
-        let stops = MotionStops::new(robot, (body, scene), rule, &self.reach);
-        let keeps = |pair: &StopClearance| pair.distance > scene.clearance;
-        let is_clear = stops.samples > 0 && stops.clearances.iter().all(keeps);
-        self.answer = match (rule.distance, self.answer) {
-            (None, Answer::Unsafe) => Answer::Unsafe,
-            (None, Answer::Safe) if is_clear => Answer::Safe,
-            (Some(_), _) if is_clear && self.lost.is_none() => Answer::Safe,
-            _ => Answer::Undecided,
-        };
-        if rule.distance.is_some() {
-            // The motion without a stop is not one of the scenario.
-            (self.closest, self.advice) = (None, None);
-        }
-        self.stops = Some(stops);
-        self
-    }
-}
-
-impl MotionStops {
-    fn new(
+    /// Bounds with directed rounding, as [`Category::stop`](crate::Category::stop).
+    pub(super) fn new(
         robot: &Robot,
         (body, scene): (&Body, &Scene),
         rule: &StopRule,
