@@ -106,14 +106,19 @@ fn row(v: &Verification) -> Vec<String> {
         Answer::Undecided => "undecided",
         Answer::Unsafe => "unsafe",
     };
+    let motion = v.clearances.first().map(|p| (&p.link, &p.obstacle, p.distance, p.time));
+    let stop = v.stops.iter().flat_map(|stops| stops.clearances.first());
+    let stop = stop.map(|p| (&p.link, &p.obstacle, p.distance, p.from));
+    // A stop counts from the sample at which it begins.
+    let pair = motion.into_iter().chain(stop).min_by(|a, b| a.2.total_cmp(&b.2));
     let mut row = vec![v.case.clone(), answer.into()];
-    match v.clearances.first() {
+    match pair {
         None => row.extend(vec![String::new(); 4]),
-        Some(pair) => row.extend([
-            pair.link.clone(),
-            pair.obstacle.clone(),
-            if pair.distance > 0.0 { lower(pair.distance) } else { "none".into() },
-            format!("{:.3}", pair.time),
+        Some((link, obstacle, distance, time)) => row.extend([
+            link.clone(),
+            obstacle.clone(),
+            if distance > 0.0 { lower(distance) } else { "none".into() },
+            format!("{time:.3}"),
         ]),
     }
     row
