@@ -3,7 +3,8 @@
 Load a robot (`Robot`), and make a model of its logs in one call (`model`). Or open recordings
 (`Recordings`), filter and cut them (`prepare`), find the smallest uncertainty sets for which a
 model encloses them (`conform`), check other recordings (`check`), compute reachable sets (`reach`),
-draw a page (`report`), and watch a running robot (`monitor`). `identify` makes the robot from
+draw a page (`report`), enclose stops (`stop`), decide whether links stay clear of obstacles
+(`verify`), and watch a running robot (`monitor`). `identify` makes the robot from
 recordings, `excite` the motions for it, `abstract` models of any order, and `flowpipe` reachable
 sets of your own system.
 """
@@ -25,6 +26,8 @@ from ._reach import ReachableSet, reach, report
 from ._reachtube import version as _version
 from ._recordings import Recordings, Run
 from ._robot import Robot
+from ._stop import AnnexRow, RecordedStop, StopStudy, WorstStop, stop
+from ._verify import Clearance, Margin, MotionVerdict, Verification, Witness, verify
 from .errors import (
     Defect,
     DefectsError,
@@ -38,10 +41,12 @@ __version__ = _version()
 
 __all__ = [
     "Abstraction",
+    "AnnexRow",
     "Box",
     "BuiltModel",
     "Check",
     "Choice",
+    "Clearance",
     "Defect",
     "DefectsError",
     "Excitation",
@@ -52,18 +57,25 @@ __all__ = [
     "Identification",
     "JointRow",
     "Leave",
+    "Margin",
     "Model",
     "ModelFileError",
     "Monitor",
+    "MotionVerdict",
     "Polynomial",
     "ReachableSet",
     "ReachtubeError",
     "ReachtubeWarning",
+    "RecordedStop",
     "Recordings",
     "Report",
     "Robot",
     "Run",
     "SettingError",
+    "StopStudy",
+    "Verification",
+    "Witness",
+    "WorstStop",
     "abstract",
     "check",
     "conform",
@@ -80,5 +92,7 @@ __all__ = [
     "reach",
     "report",
     "sin",
+    "stop",
     "variables",
+    "verify",
 ]

@@ -19,7 +19,7 @@ from ._progress import Progress, shown
 from ._recordings import source
 from ._renamed import renamed
 from ._robot import Robot
-from ._settings import Data, Group, Notion, Torque, differing, of_conformance
+from ._settings import Data, Group, Notion, Torque, among, differing, of_conformance
 from .errors import ReachtubeWarning, SettingError
 
 log = logging.getLogger("reachtube")
@@ -142,29 +142,11 @@ def conform(
     KeyboardInterrupt
         Within 0.2 s, with nothing written.
     """
+    given = among(locals())
     recordings, preparation, before = _cut(robot, data, torque, horizon, until, max_gap)
-    settings = of_conformance(
-        robot,
-        torque=torque if preparation is None else "compensated",
-        paper_model=paper_model,
-        order=order,
-        expansion=expansion,
-        disturbance=disturbance,
-        centre=centre,
-        notion=notion,
-        states=states,
-        initial_limit=initial_limit,
-        weights=weights,
-        noise=noise,
-        sensor_noise=sensor_noise,
-        nominal=nominal,
-        equations=equations,
-        calibrate=calibrate,
-        method=method,
-        explain=explain,
-        until=until,
-        max_gap=max_gap,
-    )
+    if preparation is not None:
+        given["torque"] = "compensated"
+    settings = of_conformance(robot, **given)
     with shown(progress, "conform") as tell:
         text, notes = _reachtube.conform(
             robot._native if isinstance(robot, Robot) else None,

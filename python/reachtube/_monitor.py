@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _reachtube
 from ._arrays import Array, frozen, numbers, real
+from ._findings import Finding, findings_of
 from ._model import text_of
 
 if TYPE_CHECKING:
@@ -67,8 +68,12 @@ class Monitor:
         ----------
         t
             Time of a sample, or K times, s.
-        q, qd, tau
-            Positions, velocities and torques, n or K x n, of the model's kind.
+        q
+            Positions, n or K x n.
+        qd
+            Velocities, n or K x n.
+        tau
+            Torques of the model's kind, n or K x n.
 
         Raises
         ------
@@ -85,6 +90,11 @@ class Monitor:
     def finish(self) -> list[Leave]:
         """End a recording: judge what waits for later samples, and begin anew at any time."""
         return [Leave(*left) for left in self._native.finish()]
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What was found so far: the verdict, then the first value outside."""
+        return findings_of(self._native.findings())
 
     @property
     def samples(self) -> int:

@@ -33,6 +33,8 @@ __all__ = [
     "reach",
     "read_log",
     "report",
+    "stop",
+    "verify",
     "version",
 ]
 
@@ -77,6 +79,7 @@ class Monitor:
     ) -> Monitor: ...
     def push(self, times: _Array, q: _Array, qd: _Array, tau: _Array) -> list[_Left]: ...
     def finish(self) -> list[_Left]: ...
+    def findings(self) -> str: ...
     def totals(self) -> tuple[int, int, int, int, int]: ...
     def used(self) -> _Array: ...
     def largest_used(self) -> _Array: ...
@@ -295,3 +298,21 @@ def read_log(
     recover: bool,
     cutting: tuple[str | None, bool, float, float | None],
 ) -> tuple[list[tuple[Run, str, str | None, str | None]], list[str], list[str]]: ...
+def stop(
+    model: str,
+    source: Source,
+    suites: list[str],
+    settings: str,
+    brakes: str,
+    origin: str | None,
+    question: tuple[int, int, bool],
+    recorded: Source | None = None,
+    progress: _Progress = None,
+) -> str: ...
+def verify(
+    scenario: str,
+    origin: str | None,
+    folder: str,
+    in_memory: tuple[str, Source] | None = None,
+    progress: _Progress = None,
+) -> str: ...

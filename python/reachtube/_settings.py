@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from typing import Any, Literal, TypeAlias
 
@@ -53,59 +53,37 @@ def differing(notion: Notion | None, until: float | None, max_gap: float | None)
     return json.dumps(settings)
 
 
-def of_conformance(
-    robot: Robot | Abstraction,
-    *,
-    torque: Torque,
-    paper_model: Literal[1, 2, 3] = 1,
-    order: int = 1,
-    expansion: npt.ArrayLike | None = None,
-    disturbance: Literal["sample", "constant", "measurable"] = "sample",
-    centre: Literal["free", "origin", "zero"] = "free",
-    notion: Notion = "hull",
-    states: Literal["all", "positions"] = "all",
-    initial_limit: Literal["none", "positions", "states"] = "none",
-    weights: Literal["unit", "spread"] | npt.ArrayLike = "unit",
-    noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
-    sensor_noise: npt.ArrayLike | None = None,
-    nominal: Literal["mean", "own"] = "mean",
-    equations: Literal["model", "robot"] = "model",
-    calibrate: Sequence[str] = (),
-    method: Literal["program", "bisection"] = "program",
-    explain: Literal["default"] | tuple[float, float] | None = "default",
-    until: float | None = None,
-    max_gap: float | None = None,
-) -> str:
-    """Return the settings of `conform`."""
+#: Arguments of `conform` that are not settings.
+_OTHERS = frozenset("robot data suites fit pull horizon resume progress".split())
+
+
+def among(arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the settings among the arguments of `conform`, by name."""
+    return {name: value for name, value in arguments.items() if name not in _OTHERS}
+
+
+def of_conformance(robot: Robot | Abstraction, *, torque: Torque, **given: Any) -> str:
+    """Return settings of `conform`, whose signature has their types and defaults."""
     if not isinstance(robot, (Robot, Abstraction)):
         native_of(robot)
-    settings: dict[str, Any] = {
-        "torque": torque,
-        "disturbance": disturbance,
-        "centre": centre,
-        "notion": notion,
-        "states": states,
-        "initial_limit": initial_limit,
-        "nominal": nominal,
-        "equations": equations,
-        "calibrate": names(calibrate),
-        "method": method,
-    }
+    limits = _limits(given.pop("until", None), given.pop("max_gap", None))
+    kind, order = given.pop("paper_model", 1), given.pop("order", 1)
+    expansion, explain = given.pop("expansion", None), given.pop("explain", "default")
+    settings: dict[str, Any] = {"torque": torque, **given}
     if isinstance(robot, Abstraction):
-        if (paper_model, order, expansion) != (1, 1, None):
+        if (kind, order, expansion) != (1, 1, None):
             raise SettingError("the abstraction has its own model, order and expansion")
     else:
-        kind = whole("paper_model", paper_model, 1, 3)
+        kind = whole("paper_model", kind, 1, 3)
         settings["abstraction"] = {"model": kind, "order": whole("order", order, 1, 255)}
         if expansion is not None:
             settings["expansion"] = numbers("expansion", expansion).ravel().tolist()
-    for name, value, key in [("weights", weights, "given"), ("noise", noise, "fixed")]:
-        if isinstance(value, str):
-            settings[name] = value
-        else:
-            settings[name] = {key: _radii(name, value, robot.joints)}
-    if sensor_noise is not None:
-        settings["sensor_noise"] = _radii("sensor_noise", sensor_noise, robot.joints)
+    settings["calibrate"] = names(given.get("calibrate", ()))
+    for name, key in [("weights", "given"), ("noise", "fixed")]:
+        if not isinstance(given.get(name, ""), str):
+            settings[name] = {key: _radii(name, given[name], robot.joints)}
+    if given.get("sensor_noise") is not None:
+        settings["sensor_noise"] = _radii("sensor_noise", given["sensor_noise"], robot.joints)
     if explain is None:
         settings["explain"] = None
     elif explain != "default":
@@ -113,5 +91,5 @@ def of_conformance(
         if both.size != 2:
             raise SettingError(f"explain is {explain!r}; give two tolerances, rad and rad/s")
         settings["explain"] = {"position": float(both[0]), "velocity": float(both[1])}
-    settings.update(_limits(until, max_gap))
+    settings.update(limits)
     return json.dumps(settings)

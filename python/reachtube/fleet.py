@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from . import _conform
 from ._abstraction import Abstraction
 from ._arrays import names, real
 from ._conform import told
@@ -22,7 +23,7 @@ from ._points import Points
 from ._progress import Progress, shown
 from ._renamed import renamed
 from ._robot import Robot
-from ._settings import Group, Notion, Torque, differing, of_conformance
+from ._settings import Group, Notion, Torque, among, differing, of_conformance
 from .errors import ReachtubeError, SettingError
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ def conform(
     -------
     Model
     """
-    known = inspect.signature(of_conformance).parameters
+    known = among(inspect.signature(_conform.conform).parameters)
     for name in settings:
         if name not in known:
             raise TypeError(f"fleet.conform() has no argument {name!r}")

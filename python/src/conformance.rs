@@ -155,16 +155,16 @@ pub(crate) fn differing(setup: Setup, mut given: Map<String, Value>) -> Result<S
 }
 
 /// What is read for a model: the recordings, and what differs from the model's settings.
-struct Wanted {
-    model: String,
-    source: SharedSource,
-    suites: Vec<String>,
-    settings: String,
-    keep: Keep,
+pub(crate) struct Wanted {
+    pub model: String,
+    pub source: SharedSource,
+    pub suites: Vec<String>,
+    pub settings: String,
+    pub keep: Keep,
 }
 
 impl Wanted {
-    fn open(self, watch: &dyn Progress) -> Result<Opened> {
+    pub(crate) fn open(self, watch: &dyn Progress) -> Result<Opened> {
         let (model, setup) = Model::parse(&self.model, Path::new("model"))?;
         let mut given: Map<String, Value> =
             serde_json::from_str(&self.settings).map_err(Failure::setting)?;

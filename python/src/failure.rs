@@ -151,6 +151,19 @@ impl From<reachtube::identify::Error> for Failure {
     }
 }
 
+impl From<reachtube::verify::Error> for Failure {
+    fn from(error: reachtube::verify::Error) -> Self {
+        use reachtube::verify::Error;
+        match error {
+            Error::Conform(error) => error.into(),
+            Error::Recordings(error) => error.into(),
+            Error::Robot(error) => error.into(),
+            Error::File(error) => error.into(),
+            error => Self::Setting(error.to_string()),
+        }
+    }
+}
+
 impl From<RobotError> for Failure {
     fn from(error: RobotError) -> Self {
         let text = error.to_string();
@@ -169,6 +182,7 @@ impl From<reachtube::pipeline::Error> for Failure {
             Error::Conform(error) => (*error).into(),
             Error::Robot(error) => (*error).into(),
             Error::Abstraction(error) => (*error).into(),
+            Error::Verify(error) => (*error).into(),
             Error::Settings { .. } | Error::HeldOut { .. } | Error::NothingLeft => {
                 Self::Setting(error.to_string())
             }

@@ -21,6 +21,7 @@ mod pool;
 mod prepare;
 mod recordings;
 mod robot;
+mod safety;
 mod watched;
 
 use pyo3::prelude::*;
@@ -55,6 +56,8 @@ mod _reachtube {
     use crate::recordings::{NativeRun, NativeSource};
     #[pymodule_export]
     use crate::robot::NativeRobot;
+    #[pymodule_export]
+    use crate::safety::{stop, verify};
     #[pymodule_export]
     use crate::version;
 }

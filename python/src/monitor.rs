@@ -8,9 +8,11 @@ use reachtube::conform::data::Side;
 use reachtube::conform::monitor::{Leave, Schedule};
 use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
+use reachtube::robot::{JointKind, Robot};
 
 use crate::arrays::{Input, Output, array, values};
 use crate::failure::{Failure, Result};
+use crate::findings::list;
 
 /// Time, window, joint, state, side, value, excess, radius, proved, first.
 type Left = (f64, f64, usize, String, &'static str, f64, f64, f64, bool, bool);
@@ -19,7 +21,9 @@ type Left = (f64, f64, usize, String, &'static str, f64, f64, f64, bool, bool);
 #[pyclass(name = "Monitor", module = "reachtube._reachtube")]
 pub(crate) struct NativeMonitor {
     monitor: LiveMonitor,
-    joints: usize,
+    joints: Vec<(String, JointKind)>,
+    /// The first value outside.
+    first: Option<Leave>,
 }
 
 #[pymethods]
@@ -48,7 +52,9 @@ impl NativeMonitor {
                 false => VelocitySource::Recorded,
             };
             let monitor = LiveMonitor::new(&model, schedule, velocity)?;
-            Ok(Self { monitor, joints: model.joints() })
+            let robot = Robot::from_description(&model.robot)?;
+            let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind));
+            Ok(Self { monitor, joints: joints.collect(), first: None })
         };
         made().map_err(|failure| failure.raised(py))
     }
@@ -62,7 +68,7 @@ impl NativeMonitor {
         qd: Input<'_>,
         tau: Input<'_>,
     ) -> PyResult<Vec<Left>> {
-        let n = self.joints;
+        let n = self.joints.len();
         let mut take = || -> Result<Vec<Left>> {
             let count = times.as_array().len();
             let times = values("t", &times, &[count])?;
@@ -74,7 +80,9 @@ impl NativeMonitor {
                 let row = |of: &'_ [f64]| k * n..(k * n + n).min(of.len());
                 let left = self.monitor.push(time, &q[row(&q)], &qd[row(&qd)], &tau[row(&tau)]);
                 let wrong = |error| Failure::Setting(format!("sample {k}: {error}"));
-                all.extend(left.map_err(wrong)?.iter().map(left_of));
+                let left = left.map_err(wrong)?;
+                self.first = self.first.or(left.first().copied());
+                all.extend(left.iter().map(left_of));
             }
             Ok(all)
         };
@@ -82,7 +90,19 @@ impl NativeMonitor {
     }
 
     fn finish(&mut self) -> Vec<Left> {
-        self.monitor.finish().iter().map(left_of).collect()
+        let left = self.monitor.finish();
+        self.first = self.first.or(left.first().copied());
+        left.iter().map(left_of).collect()
+    }
+
+    /// Returns the findings, a JSON list: the verdict, and the first value outside.
+    fn findings(&self) -> String {
+        let first = self.first.map(|leave| {
+            let (name, kind) = &self.joints[leave.joint - 1];
+            leave.finding(name, *kind)
+        });
+        let verdict = self.monitor.found().totals().finding();
+        list(&[verdict].into_iter().chain(first).collect::<Vec<_>>())
     }
 
     /// Samples, windows, windows left, rows, rows outside.

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import pickle
 import warnings
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
 
 import reachtube as rt
+from reachtube import _settings
 
 from conftest import SCHUNK, runs, write_csv
 
@@ -240,3 +243,11 @@ def test_the_papers_recordings_cost_what_the_command_finds(robot: rt.Robot) -> N
     data = rt.Recordings.open(SCHUNK)
     found = rt.conform(robot, data, torque="compensated", suites=["A", "B", "D", "E"])
     assert found.verified and round(float(found.cost or 0), 3) == 6048.048
+
+
+def test_the_schema_of_models_has_the_notions_and_the_choices() -> None:
+    path = Path(__file__).parents[2] / "docs/model.schema.json"
+    schema = json.loads(path.read_text())["$defs"]
+    assert schema["notion"]["enum"] == list(get_args(_settings.Notion))
+    known = {*schema["settings"]["properties"], "paper_model", "order", "expansion", "max_gap"}
+    assert set(_settings.among(inspect.signature(rt.conform).parameters)) <= known

@@ -21,6 +21,12 @@ def main() -> None:
     q, qd = rt.variables("q qd")
     pipe: rt.Flowpipe = rt.flowpipe({q: qd, qd: -rt.sin(q)}, {q: 1.0, qd: (0.0, 0.1)}, t)
     print(verdict.conformant, radius, sets[0].upper.shape, pipe.is_reached)
+    brakes = {"torque": [[40.0, 60.0]] * 6, "delay": [0.01, 0.03]}
+    study: rt.StopStudy = rt.stop(model, data, brakes, category=0)
+    ways: list[float] = [row.way for row in study.stops]
+    answer: rt.Verification = rt.verify("cell.toml")
+    smallest: float = min(pair.distance for one in answer.motions for pair in one.clearances)
+    print(bool(study), ways, smallest, [str(finding) for finding in answer.findings])
     try:
         rt.Model.load("none.json")
     except rt.DefectsError as error:

@@ -34,7 +34,6 @@ Examples:
   reachtube model --robot arm.urdf --data logs --torque motor --out arm
       from logs to a model, a page and a verdict
   reachtube demo --out demo
-      run every step on a simulated arm
   reachtube campaign --out campaign
       record the paper's experiment on a virtual robot
   reachtube inspect --data recordings

@@ -214,16 +214,6 @@ pub(crate) enum Error {
     /// A model or robot could not be exported.
     #[error(transparent)]
     Export(ExportError),
-    /// Stops of category 1 are asked for, and no deceleration is given.
-    #[error(
-        "{}: stops of category 1 need the greatest deceleration of each joint; add the line \
-         `deceleration = [4, 4, 4, 6, 6, 6]`, one number for each joint in rad/s²",
-        brakes.display()
-    )]
-    NoDeceleration {
-        /// The file of the brakes.
-        brakes: PathBuf,
-    },
     /// The question of `verify` has no answer.
     #[error(transparent)]
     Verify(reachtube::verify::Error),
@@ -347,6 +337,7 @@ impl From<PipelineError> for Error {
             PipelineError::Conform(error) => (*error).into(),
             PipelineError::Robot(error) => (*error).into(),
             PipelineError::Abstraction(error) => (*error).into(),
+            PipelineError::Verify(error) => (*error).into(),
             PipelineError::File(error) => error.into(),
             PipelineError::Settings { path, message } => Self::SettingsSyntax { path, message },
             error => Self::Pipeline(Box::new(error)),

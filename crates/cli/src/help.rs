@@ -19,10 +19,8 @@ const FEW_EXAMPLES: usize = 2;
 
 /// The commands in the order in which they are needed.
 const GROUPS: &[(&str, &[&str])] = &[
-    (
-        "From logs to a model, and to safety",
-        &["model", "check", "inspect", "export", "report", "verify", "stop", "monitor"],
-    ),
+    ("From logs to a model", &["model", "check", "inspect", "export", "report"]),
+    ("Put the sets to use", &["verify", "stop", "monitor"]),
     (
         "The steps of `model`, one by one",
         &["identify", "prepare", "conform", "abstract", "reach", "excite", "convert"],

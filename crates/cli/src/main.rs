@@ -14,7 +14,6 @@ mod opened;
 mod option_values;
 mod outcome;
 mod output;
-mod planned;
 mod progress;
 mod reference;
 mod renamed;

@@ -3,16 +3,14 @@
 use reachtube::Model;
 use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::conform::{
-    self, Check, CheckJob, Keep, Notion, Problem, Setup, SuiteReach, Tube, check, reach,
+    self, Check, Keep, Notion, Problem, Setup, SuiteReach, Tube, check, reach,
 };
 use reachtube::export::ExportCase;
-use reachtube::pipeline::prepared;
-use reachtube::recordings::DataSet;
+use reachtube::pipeline::check_job;
 
 use crate::data_arguments::{DataArguments, ModelArguments, gap_limit};
 use crate::error::{Error, Result};
 use crate::output;
-use crate::planned::Planned;
 use crate::progress::Progress;
 
 /// A model, the recordings read with its settings, and its reachable sets over them.
@@ -53,16 +51,7 @@ impl OpenedCheck {
                 [given, expected].map(|torque| format!("{torque:?}").to_lowercase());
             return Err(Error::OtherTorque { given, model });
         }
-        let prepared = model
-            .preparation
-            .as_ref()
-            .map(|known| prepared(&model, known, std::slice::from_ref(&args.data)));
-        let job = match prepared.transpose()? {
-            Some(windows) => CheckJob::new(model, setup, windows),
-            None if args.data.is_file() => CheckJob::new(model, setup, Planned::of(&args.data)),
-            None => CheckJob::new(model, setup, DataSet::open(&args.data)?),
-        };
-        let job = job
+        let job = check_job(model, setup, &args.data)?
             .suites(&args.suites)
             .notion(notion)
             .until(args.until)
@@ -73,16 +62,9 @@ impl OpenedCheck {
         Ok(Self { model, problem, tube })
     }
 
-    /// Prints notes on the recordings, and up to which time they are used if that is the model's
-    /// limit. A check says it in its verdict.
+    /// Prints notes as [`print_notes`] does.
     pub(crate) fn print_notes(&self, args: &DataArguments) {
-        if let (None, Some(until)) = (args.until, self.model.settings.until) {
-            output::note(&format!(
-                "samples later than {until} s after the first are not used, as when the sets were \
-                 found; --until changes the limit"
-            ));
-        }
-        output::notes(&self.problem.recordings().notes);
+        print_notes(&self.model, &self.problem, args.until);
     }
 
     /// Returns each suite, or run with a nominal motion of its own, as exports take it.
@@ -107,4 +89,16 @@ impl OpenedCheck {
         let _bar = Progress::new();
         Ok(reach(&self.problem, &self.tube)?)
     }
+}
+
+/// Prints notes on the recordings, and up to which time they are used if that is the model's limit.
+/// A check says it in its verdict.
+pub(crate) fn print_notes(model: &Model, problem: &Problem, until: Option<f64>) {
+    if let (None, Some(until)) = (until, model.settings.until) {
+        output::note(&format!(
+            "samples later than {until} s after the first are not used, as when the sets were \
+             found; --until changes the limit"
+        ));
+    }
+    output::notes(&problem.recordings().notes);
 }

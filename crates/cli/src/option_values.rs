@@ -6,14 +6,6 @@ use serde::de::DeserializeOwned;
 /// The values of an option, each with its explanation.
 pub(crate) type Choices = &'static [(&'static str, &'static str)];
 
-/// The directions in which recordings must lie in the reachable set, as `--notion` names them.
-pub(crate) const NOTIONS: Choices = &[
-    ("hull", "each state by itself: in the interval hull of the set"),
-    ("phase-plane", "position and velocity of each joint together: in the set's projections"),
-    ("exact", "all states together: in the set itself"),
-    ("trace", "exact, and one motion of the model through all samples, up to the noise V"),
-];
-
 /// How the disturbance may change in time.
 pub(crate) const DISTURBANCES: Choices = &[
     ("constant", "constant over the whole recording, as in the paper"),

@@ -3,8 +3,8 @@
 use reachtube_recordings::{GapLimit, RunSource};
 
 use crate::check::{Check, check};
+use crate::data::notion::Notion;
 use crate::data::problem::{Keep, Problem};
-use crate::data::settings::Notion;
 use crate::data::setup::Setup;
 use crate::error::Result;
 use crate::model::file::Model;

@@ -8,8 +8,9 @@ use reachtube_recordings::{RunSource, Torque};
 use reachtube_robot::Robot;
 
 use crate::answer::Answer;
+use crate::data::notion::Notion;
 use crate::data::problem::{Keep, Problem};
-use crate::data::settings::{Noise, Notion, Settings, Tolerance};
+use crate::data::settings::{Noise, Settings, Tolerance};
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::group::{FitSettings, Group};

@@ -28,6 +28,13 @@ impl UncertaintySets {
         scaled
     }
 
+    /// Returns the sets with the radii of X0 times `factor`, rounded to nearest.
+    pub(crate) fn with_initial_scaled(&self, factor: f64) -> Self {
+        let mut scaled = self.clone();
+        scaled.initial_set.radius.iter_mut().for_each(|radius| *radius *= factor);
+        scaled
+    }
+
     /// Returns the sets with the radii of X0 and U scaled about their centres, or of U alone where
     /// the noise of the sensors limits X0 (`input_only`).
     #[must_use]

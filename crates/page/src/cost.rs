@@ -175,23 +175,42 @@ fn by_motion(model: &Model) -> TextTable {
     let mut motions: Vec<_> =
         model.left_out.iter().filter_map(|left| Some((left, left.cost?))).collect();
     motions.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let factor = |of: Option<f64>| of.map_or_else(|| "none found".into(), at_least);
     let row = |(left, without): &(&reachtube_conform::next_motion::LeftOut, f64)| {
         vec![
             left.motion.clone(),
             four_decimals(*without),
             format!("{:+.1} %", 100.0 * (without / cost - 1.0)),
-            left.gauge.map_or_else(|| "none found".into(), at_least),
+            factor(left.gauge),
+            factor(left.initial_gauge),
+            factor(left.input_gauge),
         ]
+    };
+    // Only linear models have the factors of X0 and of U in turn.
+    let in_turn = motions.iter().any(|(left, _)| left.initial_gauge.is_some());
+    let columns = if in_turn { 6 } else { 4 };
+    let first = |mut row: Vec<String>| {
+        row.truncate(columns);
+        row
     };
     TextTable {
         title: format!(
             "{} found without a motion, and the factor by which they must grow to hold it",
             if linearised.is_some() { "Linearised sets" } else { "Sets" }
         ),
-        header: ["Without", &format!("Cost {}", cost_unit(model)), "Change", "Factor"]
+        header: first(
+            [
+                "Without",
+                &format!("Cost {}", cost_unit(model)),
+                "Change",
+                "Factor",
+                "X0 at start",
+                "Then U",
+            ]
             .map(String::from)
             .to_vec(),
-        rows: motions.iter().take(MOST_ROWS).map(row).collect(),
+        ),
+        rows: motions.iter().take(MOST_ROWS).map(row).map(first).collect(),
     }
 }
 

@@ -50,12 +50,12 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
         rows.iter().filter(|row| row.category == category).cloned().collect()
     };
     let body = html! {
-        (verdict(study, &unit))
+        (verdict(study))
         (section("Category 0", &html! {
             p { "Drives off and brakes on at once, at full speed, extension and load. One joint \
                  moves when the stop begins; the three with the greatest distance are listed." }
             (laid_out(&annex_table(&of(0), &unit)))
-            @for note in notes { p { (Text(note)) } }
+            @for note in notes { p { (Text(&note.text)) } }
         }))
         @if !of(1).is_empty() {
             (section("Category 1", &html! {
@@ -86,14 +86,14 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
 }
 
 /// Returns the verdict in its colour.
-fn verdict(study: &StopStudy, unit: &str) -> Markup {
+fn verdict(study: &StopStudy) -> Markup {
     let ok = study.outside().is_none() && study.is_proved();
-    let sentence = study.verdict(unit);
-    let (head, words) = sentence.split_once(": ").unwrap_or((&sentence, ""));
+    let sentence = study.findings.first().map_or("", |verdict| &verdict.text);
+    let (head, words) = sentence.split_once(": ").unwrap_or((sentence, ""));
     html! {
         div class=(if ok { "verdict ok" } else { "verdict bad" }) {
             h2 { (Text(&capital(head))) }
-            p.words { (Text(&capital(words))) "." }
+            p.words { (Text(&capital(words))) }
         }
     }
 }

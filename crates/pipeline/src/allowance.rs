@@ -149,6 +149,7 @@ fn rounded_up(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use reachtube_conform::result::{Code, Severity};
     use reachtube_conform::settings::{Equations, NominalStart};
     use reachtube_conform::{Job, Noise, Settings, Silent};
     use reachtube_recordings::{MemoryRuns, Run, Torque};
@@ -192,13 +193,32 @@ mod tests {
         job.settings(settings).run(&Silent).unwrap()
     }
 
-    #[test]
-    fn with_the_allowance_the_sets_of_the_others_enclose_each_motion() {
+    fn pendulum() -> Robot {
         let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
                      placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
                      mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
                      inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
-        let robot = Robot::from_toml(robot, "pendulum").unwrap();
+        Robot::from_toml(robot, "pendulum").unwrap()
+    }
+
+    #[test]
+    fn a_motion_that_no_allowance_encloses_is_named() {
+        let answer = answer(&pendulum(), &[("a", 0.1), ("b", 0.2), ("c", 0.3)]);
+        let mut left_out = unseen(&answer);
+        left_out[1].factor = None;
+        let (allowance, reason, finding) = asked(&answer, &left_out, [0.0, f64::INFINITY]);
+        assert!(allowance.is_empty() && reason.ends_with("no allowance encloses them"), "{reason}");
+        let finding = finding.unwrap();
+        assert_eq!((finding.code, finding.place.as_deref()), (Code::LeftOut, Some("b")));
+        assert_eq!(finding.severity, Severity::Warning);
+        assert!(finding.text.contains("enclose b, which was left out"), "{finding}");
+        // What is accepted anyway needs none.
+        assert_eq!(asked(&answer, &left_out, [1.0, f64::INFINITY]).2, None);
+    }
+
+    #[test]
+    fn with_the_allowance_the_sets_of_the_others_enclose_each_motion() {
+        let robot = pendulum();
         let all = [("a", 0.1), ("b", 0.2), ("c", 0.3)];
         let asked = |most: f64| {
             let answer = answer(&robot, &all);

@@ -19,6 +19,9 @@ pub enum Error {
     /// The expansion point does not fit the robot.
     #[error(transparent)]
     Abstraction(Box<reachtube_abstraction::Error>),
+    /// A question about a robot's links has no answer.
+    #[error(transparent)]
+    Verify(Box<reachtube_verify::Error>),
     /// A file could not be read.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
@@ -112,4 +115,5 @@ from_below!(
     Conform: reachtube_conform::Error,
     Robot: reachtube_robot::RobotError,
     Abstraction: reachtube_abstraction::Error,
+    Verify: reachtube_verify::Error,
 );

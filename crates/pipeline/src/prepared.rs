@@ -1,14 +1,38 @@
 use std::path::{Path, PathBuf};
 
-use reachtube_conform::Model;
+use reachtube_conform::{CheckJob, Model, Setup};
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, read};
-use reachtube_recordings::{MemoryRuns, Preparation, any_simulated};
+use reachtube_recordings::{DataSet, MemoryRuns, Preparation, any_simulated};
 use reachtube_robot::Robot;
 
 use crate::error::Result;
+use crate::planned::Planned;
 use crate::robot::prepare_for;
 use crate::sorted::{index_names, origins_of};
 use crate::windows::Prepared;
+
+/// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
+/// CSV file (a planned motion), or for a model that `model` made, logs, which are prepared as its
+/// own were.
+///
+/// # Errors
+///
+/// Recordings that cannot be opened, or logs as for [`prepared`].
+pub fn check_job(model: Model, setup: Setup, data: &Path) -> Result<CheckJob> {
+    let windows = model
+        .preparation
+        .as_ref()
+        .map(|known| prepared(&model, known, &[data.to_path_buf()]))
+        .transpose()?;
+    Ok(match windows {
+        Some(windows) => CheckJob::new(model, setup, windows),
+        None if data.is_file() => CheckJob::new(model, setup, Planned::of(data)),
+        None => {
+            let data = DataSet::open(data).map_err(reachtube_conform::Error::from)?;
+            CheckJob::new(model, setup, data)
+        }
+    })
+}
 
 /// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`.
 ///

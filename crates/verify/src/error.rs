@@ -59,6 +59,15 @@ pub enum Error {
         /// The robot.
         robot: String,
     },
+    /// Stops of category 1 are asked for, and no deceleration is given.
+    #[error(
+        "{origin}: stops of category 1 need the greatest deceleration of each joint; add the line \
+         `deceleration = [4, 4, 4, 6, 6, 6]`, one number for each joint in rad/s²"
+    )]
+    NoDeceleration {
+        /// The file of the brakes.
+        origin: String,
+    },
     /// A file could not be read.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),

@@ -7,7 +7,7 @@ use crate::data_arguments::ModelArguments;
 use crate::error::Result;
 use crate::global::global;
 use crate::opened::OpenedCheck;
-use crate::option_values::{NOTIONS, choice};
+use crate::option_values::choice;
 use crate::outcome::Outcome;
 use crate::output;
 
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     pub model: ModelArguments,
     /// Directions in which the recordings must lie in the reachable set [default: as in the model
     /// file]
-    #[arg(long, value_parser = choice::<Notion>(NOTIONS))]
+    #[arg(long, value_parser = choice::<Notion>(Notion::NAMES))]
     pub notion: Option<Notion>,
 }
 

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::Model;
 use reachtube::conform::result::{FrontEnd, Summary, Table};
 use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::page::{Assets, PAGE_FILE, Sources, TO_HELD_OUT, TO_OWN};
 use reachtube::recordings::{DataSet, Torque};
+use reachtube::{Model, write};
 use reachtube_robot::Robot;
 use serde_json::json;
 
@@ -26,6 +26,12 @@ use crate::virtual_robot_arguments::VirtualRobotArguments;
 /// What of the nominal model is fitted.
 const GROUPS: [Group; 2] = [Group::Viscous, Group::Coulomb];
 
+/// A scenario and brakes for `verify` and `stop`, by their names in the folder.
+const SAFETY: [(&str, &str); 2] = [
+    ("cell.toml", include_str!("../../demo/cell.toml")),
+    ("brakes.toml", include_str!("../../demo/brakes.toml")),
+];
+
 /// The weight of the pull toward the nominal values.
 const PULL: f64 = 0.05;
 
@@ -37,7 +43,8 @@ Example:
 /// Run every step on a simulated arm: record, fit, conform, calibrate, check, report
 ///
 /// The folder receives the recordings, the model and two report pages: one on the recordings that
-/// the model was made from, one on motions that were held out.
+/// the model was made from, one on motions that were held out. It also receives cell.toml and
+/// brakes.toml, for `verify` and `stop`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -58,7 +65,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let folder = args.out.join("recordings");
     let path = args.out.join("model.json");
     let pages = [args.out.join("report"), args.out.join("held-out")];
-    output::claim(&path)?;
+    let safety = SAFETY.map(|(name, text)| (args.out.join(name), text));
+    output::claim_all([&path].into_iter().chain(safety.iter().map(|(path, _)| path)))?;
     output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
     let options = options(args)?;
     let bar = Progress::new();
@@ -88,6 +96,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     drop(bar);
     answer.model.save(&path)?;
     output::wrote(&path);
+    for (path, text) in &safety {
+        write::atomically(path, |file| file.write_all(text.as_bytes()))?;
+    }
     let mut page = conform_command::page_of(&answer)?;
     page.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
     output::wrote(&report_files::write_page(&page, Assets::Inside, &pages[0])?);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use reachtube::conform::model::Provenance;
 use reachtube::conform::result::FrontEnd;
-use reachtube::conform::{Finding, Keep, SuiteReach};
+use reachtube::conform::{Finding, Keep, Model, Stiction, SuiteReach, UncertaintySets, stiction};
 use reachtube::page::{Sources, page};
 use reachtube::write;
 use serde_json::json;
@@ -18,7 +18,7 @@ use crate::outcome::Outcome;
 use crate::output;
 use crate::report_files;
 use crate::table::table;
-use reachtube::number::at_least;
+use reachtube::number::{at_least, four_decimals};
 use reachtube_robot::JointKind;
 
 const HELP: &str = "\
@@ -54,6 +54,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let OpenedCheck { model, problem, .. } = &opened;
     opened.print_notes(&args.model.data);
     let (reach, check) = (opened.reach()?, opened.check()?);
+    let rests = stiction(problem, &sets_of(model), &reach);
     let file = |reach, name: String| Written {
         reach,
         samples: args.out.join(format!("{name}.csv")),
@@ -78,6 +79,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let Provenance { tool, model_sha256, settings, data } = &check.provenance;
         output::print_json(&json!({
             "reach": rows,
+            "stiction": rests.iter().map(|rest| rest_json(model, rest)).collect::<Vec<_>>(),
             "tool": tool,
             "model_sha256": model_sha256,
             "settings": settings,
@@ -91,14 +93,66 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let header = ["suite", "run", "samples", &q, &qd, "file"];
         let rows: Vec<_> = written.iter().map(Written::row).collect();
         output::print(&format!(
-            "reachable sets, with their widest interval at the last sample\n{}",
-            table(&header, &rows)
+            "reachable sets, with their widest interval at the last sample\n{}{}",
+            table(&header, &rows),
+            rests_text(model, &rests)
         ))?;
     }
     for lost in reach.iter().filter_map(|reach| reach.lost.as_ref()) {
         output::note(&Finding::from(lost).to_string());
     }
     Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
+}
+
+fn sets_of(model: &Model) -> UncertaintySets {
+    UncertaintySets {
+        initial_set: model.initial_set.clone(),
+        input_set: model.input_set.clone(),
+        noise_set: model.noise_set.clone(),
+    }
+}
+
+/// Returns the name of a joint that may come to rest.
+fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
+    &model.robot.joints[rest.joint].name
+}
+
+fn rest_json(model: &Model, rest: &Stiction) -> serde_json::Value {
+    json!({
+        "joint": joint_of(model, rest),
+        "steps": rest.steps,
+        "torque": rest.torque,
+        "room": rest.room,
+        "case": rest.case,
+        "time": rest.time,
+        "covered": rest.is_covered(),
+    })
+}
+
+/// Returns the dry friction of joints that may come to rest, beside U.
+fn rests_text(model: &Model, rests: &[Stiction]) -> String {
+    if rests.is_empty() {
+        return String::new();
+    }
+    let row = |rest: &Stiction| {
+        vec![
+            joint_of(model, rest).to_owned(),
+            rest.steps.to_string(),
+            at_least(rest.torque),
+            four_decimals(rest.room),
+            if rest.is_covered() { "yes" } else { "no" }.to_owned(),
+        ]
+    };
+    let rows: Vec<_> = rests.iter().map(row).collect();
+    let open = match rests.iter().all(Stiction::is_covered) {
+        true => "",
+        false => {
+            "U does not cover a joint that sticks where the recorded one moved: for these joints \
+             it covers stiction as far as the recordings show it\n"
+        }
+    };
+    let header = ["joint", "steps", "friction differs by", "U allows", "covered"];
+    format!("dry friction where a velocity may be zero [N m]\n{}{open}", table(&header, &rows))
 }
 
 impl Written<'_> {

@@ -12,7 +12,7 @@ use reachtube::verify::{Brakes, Category, StopQuestion, StopStudy, stop_study};
 use reachtube::write;
 
 use crate::data_arguments::ModelArguments;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
 use crate::output;
@@ -72,11 +72,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = opened.problem.robot();
     let brakes = Brakes::from_toml(&text, &args.brakes.display().to_string(), robot)?;
     let sets = &opened.tube().sets;
-    let category = match args.category {
-        0 => Category::Zero,
-        _ => Category::one(&brakes, &sets.input_set)
-            .ok_or_else(|| Error::NoDeceleration { brakes: args.brakes.clone() })?,
-    };
+    let origin = args.brakes.display().to_string();
+    let category = Category::numbered(args.category, &brakes, &origin, &sets.input_set)?;
     let recorded = args.stops.as_ref().map(DataSet::open).transpose()?;
     opened.print_notes(&args.model.data);
     let question = StopQuestion {

@@ -161,6 +161,29 @@ fn the_shield_gets_a_proved_radius_and_its_own_file_is_changed_in_place() {
 }
 
 #[test]
+fn armour_gets_a_header_with_proved_bounds() {
+    let lab = lab("");
+    let capsule = |link: usize| {
+        format!("[[capsule]]\nlink = {link}\nfrom = [0, 0, 0]\nto = [0.4, 0, 0]\nradius = 0.05\n")
+    };
+    lab.write("capsules.toml", capsule(1) + &capsule(2));
+    let armour = "export --robot arm.toml --to armour --capsules capsules.toml --out armour";
+    let whole = format!("{armour} --uncertainty 0.03 --torque-limits 50,20");
+    let text = lab.run(&whole).exits(0).stdout;
+    assert!(text.contains("proved") && text.contains("RobotInfo.h"), "{text}");
+    assert!(lab.read("armour/RobotInfo.h").starts_with("// Written by reachtube"));
+    let result = lab.run(&format!("{whole} --json")).exits(0).json();
+    let bounds = result["mass_matrix"].as_array().unwrap();
+    assert!(bounds[0].as_f64().unwrap() > 0.0 && bounds[1].as_f64() > bounds[0].as_f64());
+    lab.run(armour).exits(2);
+    lab.run(&format!("{armour} --uncertainty 0.03 --torque-limits 50"))
+        .fails_with_last(&["1 torque limits", "2 positive"]);
+    lab.write("still.toml", lab.read("arm.toml").replace("velocity_limit = 3.0\n", ""));
+    lab.run(&whole.replace("arm.toml", "still.toml")).fails_with_last(&["velocity limit"]);
+    lab.run(&format!("{whole} --update x.h")).fails_with(&["--update"]);
+}
+
+#[test]
 fn help_names_each_tool_and_what_it_means() {
     let help = Lab::new().run("export --help-all").exits(0).stdout;
     for (tool, _) in TOOLS {

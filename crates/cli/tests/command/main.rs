@@ -2,6 +2,7 @@
 
 mod abstraction;
 mod bad_input;
+mod beyond;
 mod browser;
 mod convert;
 mod defects;
@@ -13,6 +14,7 @@ mod inspect;
 mod locks;
 mod model;
 mod monitor;
+mod newcomer;
 mod nonlinear;
 mod notions;
 mod options;

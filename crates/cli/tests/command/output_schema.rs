@@ -1,17 +1,36 @@
 //! What commands print with `--json` fits docs/output.schema.json.
 
+use jsonschema::Registry;
+use reachtube::conform::Notion;
 use serde_json::{Value, json};
 
 use crate::fixture::Lab;
 use crate::provenance::names_what_it_is_of;
 
-/// Returns the schema of one command's output.
+fn read(file: &str) -> Value {
+    let path = format!("{}/../../docs/{file}", env!("CARGO_MANIFEST_DIR"));
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// Returns the schema of one command's output, which refers to the one of model files beside it.
 fn schema(name: &str) -> jsonschema::Validator {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/output.schema.json");
-    let mut schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let mut schema = read("output.schema.json");
+    let model = read("model.schema.json");
+    let beside =
+        Registry::new().add("json-schema:///model.schema.json", &model).unwrap().prepare().unwrap();
     jsonschema::draft202012::meta::validate(&schema).unwrap();
     schema["oneOf"] = json!([{ "$ref": format!("#/$defs/{name}") }]);
-    jsonschema::draft202012::new(&schema).unwrap()
+    jsonschema::draft202012::options().with_registry(&beside).build(&schema).unwrap()
+}
+
+#[test]
+fn the_schema_has_the_notions_of_the_command() {
+    let names: Vec<&str> = Notion::NAMES.iter().map(|(name, _)| *name).collect();
+    assert_eq!(read("model.schema.json")["$defs"]["notion"]["enum"], json!(names));
+    for name in names {
+        let notion: Notion = serde_json::from_value(json!(name)).unwrap();
+        assert_eq!(json!(notion), json!(name));
+    }
 }
 
 /// Asserts that a value fits the schema of a command's output.
@@ -61,6 +80,8 @@ fn results_fit_the_schema() {
     );
     let shield = "export --model model.json --data data --to sara-shield --out shield";
     run("export_shield", &format!("{shield} --capsules capsules.toml"));
+    let armour = "export --robot arm.toml --to armour --capsules capsules.toml --out armour";
+    run("export_armour", &format!("{armour} --uncertainty 0.03 --torque-limits 50,20"));
     run("report", &format!("report {with} --out page"));
     run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");
     run("robot_show", "robot show arm.toml");

@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use crate::claim::sample_points::{SamplePoints, points};
 use crate::claim::sample_set::{CentredPoints, Factors, SampleSet};
+use crate::data::notion::Notion;
 use crate::data::problem::Problem;
-use crate::data::settings::Notion;
 use crate::error::{Error, Result};
 use crate::model::file::Model;
 use crate::sets::UncertaintySets;
@@ -114,7 +114,8 @@ fn lines(
     let (settings, slice) = (problem.settings(), plant.slice(sets, at.place()));
     let points = CentredPoints::new(at, &slice);
     let mut lines = Vec::new();
-    for states in &settings.notion.projections(settings.states, problem.joints()) {
+    let rows = settings.states.rows(2 * problem.joints());
+    for states in &settings.notion.projections(rows, problem.joints()) {
         let (proved, _) = SampleSet::new(&slice, states).prove(&points, |point, factors| {
             let Factors { held, limit, set, work } = factors;
             let (suite, run) = at.owners[point];

@@ -5,8 +5,9 @@ use crate::claim::look::Look;
 use crate::claim::points::{Points, tolerance};
 use crate::claim::remote::{PointServer, Remote};
 use crate::claim::traces::Traces;
+use crate::data::notion::Notion;
 use crate::data::problem::Problem;
-use crate::data::settings::{Notion, Settings, States};
+use crate::data::settings::Settings;
 use crate::error::Result;
 use crate::search::optimality::{LARGEST_GAP, LARGEST_GAP_OF_POINTS};
 use crate::sets::UncertaintySets;
@@ -16,55 +17,10 @@ use crate::tube::polynomial::Polynomial;
 use crate::tube::tube::Tube;
 
 impl Notion {
-    /// Returns whether recorded points are judged, and not only each state by itself.
-    #[must_use]
-    pub(crate) fn asks_points(self) -> bool {
-        self != Self::Hull
-    }
-
-    /// Returns whether one motion of the model must pass through all samples of a recording.
-    #[must_use]
-    pub(crate) fn asks_motions(self) -> bool {
-        self == Self::Trace
-    }
-
-    /// Returns the states of each projection in which recorded points must lie in the reachable
-    /// set.
-    pub(crate) fn projections(self, states: States, joints: usize) -> Vec<Vec<usize>> {
-        let rows = states.rows(2 * joints);
-        match self {
-            Self::Exact | Self::Trace => vec![(0..rows).collect()],
-            _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
-            _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
-        }
-    }
-
     /// Returns the relative gap above which sets are not called the smallest: cutting planes end
     /// below it.
     pub(crate) fn largest_gap(self) -> f64 {
         if self.asks_points() { LARGEST_GAP_OF_POINTS } else { LARGEST_GAP }
-    }
-
-    /// Returns what is claimed of the recorded `states`, such as "position", in a model's `set`.
-    pub(crate) fn claim_words(self, states: &str, set: &str) -> String {
-        match self {
-            Self::Hull => format!(
-                "the recorded {states} of every joint lies in the interval hull of the model's \
-                 {set}"
-            ),
-            Self::PhasePlane => format!(
-                "the recorded {states} of every joint together lie in the projection of the \
-                 model's {set} on the joint's phase plane"
-            ),
-            Self::Exact => {
-                format!("the recorded {states} of all joints together lie in the model's {set}")
-            }
-            Self::Trace => format!(
-                "{}, and one motion of the model, with its start in X0 and its input in U, passes \
-                 through all samples within V",
-                Self::Exact.claim_words(states, set)
-            ),
-        }
     }
 }
 

@@ -4,8 +4,9 @@ use rayon::prelude::*;
 use reachtube_recordings::State;
 
 use crate::claim::sample_points::{SamplePoints, points};
+use crate::data::notion::Notion;
 use crate::data::problem::Problem;
-use crate::data::settings::{Notion, States};
+use crate::data::settings::States;
 use crate::error::Result;
 use crate::sets::UncertaintySets;
 use crate::tube::linear::Linear;
@@ -46,7 +47,7 @@ impl PhasePlane {
             return Ok(Vec::new());
         }
         let (plant, points) = (Linear::with_slices(problem)?, points(problem)?);
-        let planes = Notion::PhasePlane.projections(States::All, problem.joints());
+        let planes = Notion::PhasePlane.projections(2 * problem.joints(), problem.joints());
         let plane = |states: &Vec<usize>| {
             let ratio = |at: &SamplePoints| furthest(&plant.slice(sets, at.place()), at, states);
             let ratios: Vec<f64> = points.par_iter().map(ratio).collect();

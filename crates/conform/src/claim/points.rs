@@ -61,7 +61,8 @@ impl<'a> Points<'a> {
         lists: KnownLists,
         file: Box<dyn Fn(u32) -> String + Sync + 'a>,
     ) -> Self {
-        let projections = settings.notion.projections(settings.states, joints);
+        let rows = settings.states.rows(2 * joints);
+        let projections = settings.notion.projections(rows, joints);
         Self { samples, projections, tolerance: tolerance(settings), lists, file }
     }
 

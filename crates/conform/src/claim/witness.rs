@@ -5,8 +5,8 @@ use std::fmt::Write;
 use reachtube_recordings::State;
 use serde::{Deserialize, Serialize};
 
+use crate::data::notion::Notion;
 use crate::data::problem::Problem;
-use crate::data::settings::Notion;
 use crate::data::side::Side;
 use crate::tube::judged::{At, Judged, PointOutside};
 use crate::tube::tube::Tube;

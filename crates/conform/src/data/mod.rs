@@ -10,6 +10,7 @@ pub(crate) mod input;
 pub(crate) mod kept;
 pub(crate) mod marks;
 mod notes;
+pub(crate) mod notion;
 pub(crate) mod origin;
 pub(crate) mod problem;
 pub(crate) mod recordings;

@@ -9,6 +9,7 @@ use reachtube_reach::Disturbance;
 use reachtube_recordings::{GapLimit, Torque};
 use serde::{Deserialize, Serialize};
 
+use crate::data::notion::Notion;
 use crate::error::{Error, Result};
 
 /// What the notion trace asks of the settings.
@@ -77,22 +78,6 @@ pub enum InitialLimit {
     Positions,
     /// Positions and velocities no further than these first states.
     States,
-}
-
-/// In which directions recordings must lie in the reachable set (docs/method.md, correction C).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Notion {
-    /// Each state by itself: in the interval hull of the set, the paper's notion.
-    #[default]
-    Hull,
-    /// Position and velocity of each joint together: in the set's projection on its phase plane.
-    PhasePlane,
-    /// All states together: in the set itself.
-    Exact,
-    /// All states together, and one motion of the model passes through all samples of a recording,
-    /// up to the noise set V.
-    Trace,
 }
 
 /// Where the nominal motion of a run starts.

@@ -7,7 +7,8 @@ use reachtube_robot::Robot;
 use crate::data::condition::Condition;
 use crate::data::correction::InputCorrection;
 use crate::data::dynamics::Dynamics;
-use crate::data::settings::{Equations, Notion, Settings, Tolerance};
+use crate::data::notion::Notion;
+use crate::data::settings::{Equations, Settings, Tolerance};
 use crate::error::{Error, Result};
 
 /// What decides a conformance besides the recordings: the robot, its model and the settings.

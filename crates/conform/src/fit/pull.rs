@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fit::evaluation::FitTask;
 use crate::fit::group::Group;
 use crate::fit::parameters::Parameters;
@@ -181,7 +181,19 @@ impl<'a> Fold<'a> {
             held: held.to_vec(),
             effort: SearchEffort::QUICK,
         };
-        let numbers = self.own.search(&wanted, from)?.numbers;
+        // Without a group a nominal motion may run away until the others are fitted again.
+        let start = self.own.parameters.start();
+        let found = match self.own.search(&wanted, from) {
+            Err(Error::RunsAway { .. }) => self.own.search(&wanted, &start),
+            found => found,
+        };
+        let numbers = match found {
+            Err(Error::RunsAway { .. }) => {
+                let name = self.own.data.motions[self.unseen.motion].clone();
+                return Ok(((UnseenMotion::runs_away(name), None), start));
+            }
+            found => found?.numbers,
+        };
         Ok((self.unseen.compare(&numbers)?, numbers))
     }
 }

@@ -63,7 +63,7 @@ pub struct GroupCost {
 }
 
 /// A fit without one motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct UnseenMotion {
     /// The motion.
@@ -78,7 +78,13 @@ pub struct UnseenMotion {
     /// `None` if no factor suffices.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growth: Option<f64>,
-    /// Cost of these sets once they have grown so.
+    /// The factor of X0 that encloses the starts of the motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub initial_growth: Option<f64>,
+    /// The factor of U that encloses the rest of the motion once X0 has grown so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_growth: Option<f64>,
+    /// Cost of these sets once both have grown by `growth`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub grown_cost: Option<f64>,
     /// How many rows of the motion leave these sets.
@@ -92,8 +98,7 @@ pub struct UnseenMotion {
 impl UnseenMotion {
     /// Makes the record of a motion without which a nominal motion runs away.
     pub(crate) fn runs_away(motion: String) -> Self {
-        let (cost, cost_without, growth, grown_cost, outside) = Default::default();
-        Self { motion, cost, cost_without, growth, grown_cost, outside, rows: 0 }
+        Self { motion, ..Self::default() }
     }
 }
 

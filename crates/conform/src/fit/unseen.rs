@@ -1,10 +1,13 @@
 //! How a nominal model and its sets carry over to a motion that neither has seen.
 
+use std::slice::from_ref;
+
 use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
 use crate::fit::evaluation::FitTask;
 use crate::fit::record::UnseenMotion;
 use crate::next_motion::allowance::Missing;
+use crate::program::program::Program;
 
 /// A motion that is left out of a fit and of its sets.
 pub(crate) struct Unseen<'a> {
@@ -39,6 +42,8 @@ impl Unseen<'_> {
         let input_only = whole.settings.nominal == NominalStart::Own;
         let [_, input, both] = program.growth_factors(&smallest.sets);
         let growth = if input_only { input } else { both };
+        let [initial_growth, input_growth] =
+            Program::growth_in_turn(from_ref(&program), &smallest.sets, input_only);
         let of_track = |t: &usize| {
             let own = whole.program(&model, &[*t]);
             [own.outside(&smallest.sets), own.rows() / 2]
@@ -52,6 +57,8 @@ impl Unseen<'_> {
             cost: Some(cost),
             cost_without: Some(smallest.cost),
             growth,
+            initial_growth,
+            input_growth,
             grown_cost: growth.map(|growth| program.cost(&smallest.sets.grown(growth, input_only))),
             outside: Some(outside),
             rows,

@@ -1,6 +1,7 @@
 //! A monitor: samples one at a time, and at once what leaves the reachable set of a model.
 
 mod delayed;
+mod findings;
 mod input;
 mod leave;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]

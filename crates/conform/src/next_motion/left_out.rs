@@ -71,19 +71,21 @@ pub(crate) fn leave_each_out(
         Ok((motion, without, decides.then_some(programs)))
     });
     let numbered: Vec<_> = numbered.collect::<Result<_>>()?;
+    let is_linear = problem.dynamics().linear_system().is_some();
     let leave_out = |(motion, without, number): &(&str, Without, Option<usize>)| {
         progress.go_on()?;
-        let unknown = LeftOut {
-            motion: (*motion).into(),
-            cost: None,
-            rows: without.row_count()?,
-            outside: None,
-            gauge: None,
-        };
+        let unknown = LeftOut::unknown(motion, without.row_count()?);
         match *number {
             None => {
-                let cost = Some(program.cost(sets));
-                let left = LeftOut { cost, outside: Some(0), gauge: Some(1.0), ..unknown };
+                let (cost, none) = (Some(program.cost(sets)), is_linear.then_some(1.0));
+                let left = LeftOut {
+                    cost,
+                    outside: Some(0),
+                    gauge: Some(1.0),
+                    initial_gauge: none,
+                    input_gauge: none,
+                    ..unknown
+                };
                 Ok((left, Some(Missing::new())))
             }
             Some(number) if number > MOST_PROGRAMS => Ok((unknown, Some(Missing::new()))),
@@ -95,7 +97,6 @@ pub(crate) fn leave_each_out(
     };
     let left: Vec<_> = numbered.par_iter().map(leave_out).collect::<Result<_>>()?;
     let (each, missing): (Vec<LeftOut>, Vec<Option<Missing>>) = left.into_iter().unzip();
-    let is_linear = problem.dynamics().linear_system().is_some();
     let missing: Option<Vec<Missing>> = missing.into_iter().collect();
     Ok(LeftOutMotions { each, missing: missing.filter(|_| is_linear) })
 }
@@ -114,8 +115,7 @@ pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<(LeftOut, Opt
     let limits = problem.with_suites(|suite| !without.suites[suite]).limits();
     let program = Program::of_problem(problem)?.with_limits(limits);
     let (own, others) = (without.own(&program)?, without.others(&program)?);
-    let (rows, [cost, gauge]) = (without.row_count()?, [None; 2]);
-    let unknown = LeftOut { motion: motion.into(), cost, rows, outside: None, gauge };
+    let unknown = LeftOut::unknown(motion, without.row_count()?);
     without.compare(&others, &[], &own, unknown)
 }
 
@@ -185,13 +185,20 @@ impl Without<'_> {
             if input_only { input } else { both }
         };
         let growth = own.iter().map(growth).try_fold(1.0, |max: f64, g| g.map(|g| max.max(g)));
-        let (outside, gauge) = match self.problem.dynamics().linear_system() {
-            Some(_) => (Some(own.iter().map(|own| own.outside(&sets)).sum()), growth),
-            None => self.outer(&sets, growth.unwrap_or(1.0), input_only)?,
+        let compared = match self.problem.dynamics().linear_system() {
+            Some(_) => {
+                let [initial_gauge, input_gauge] = Program::growth_in_turn(own, &sets, input_only);
+                let outside = Some(own.iter().map(|own| own.outside(&sets)).sum());
+                LeftOut { outside, gauge: growth, initial_gauge, input_gauge, ..unknown }
+            }
+            None => {
+                let (outside, gauge) = self.outer(&sets, growth.unwrap_or(1.0), input_only)?;
+                LeftOut { outside, gauge, ..unknown }
+            }
         };
         let mut missing = Missing::default();
         own.iter().for_each(|own| own.missing(&sets, &mut missing));
-        Ok((LeftOut { cost: Some(others.cost(&sets)), outside, gauge, ..unknown }, Some(missing)))
+        Ok((LeftOut { cost: Some(others.cost(&sets)), ..compared }, Some(missing)))
     }
 
     /// Returns how many of the motion's rows leave the computed outer sets, and the motion's gauge

@@ -77,5 +77,6 @@ pub(crate) fn leave_points_out(problem: &Problem, motion: &str) -> Result<LeftOu
         rows: judged.points,
         outside: Some(judged.outside),
         gauge,
+        ..LeftOut::default()
     })
 }

@@ -4,7 +4,7 @@ use crate::fit::record::UnseenMotion;
 
 /// The sets of all motions but one, and how that one lies to them. A description, to rounding:
 /// nothing of it is proved, and it bounds no probability.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeftOut {
     /// The motion that is left out.
@@ -20,12 +20,33 @@ pub struct LeftOut {
     /// `None` if no factor suffices, or where the reachable set of a model that is not linear
     /// is lost before one does.
     pub gauge: Option<f64>,
+    /// The factor, at least 1, by which the radii of X0 must grow to enclose the starts of the
+    /// motion. `None` if no factor suffices, and for a model that is not linear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub initial_gauge: Option<f64>,
+    /// The factor, at least 1, by which the radii of U must grow to enclose the rest of the motion
+    /// once X0 has grown so. `None` if no factor suffices, and for a model that is not linear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_gauge: Option<f64>,
+}
+
+impl LeftOut {
+    /// Makes the record of a motion that was not compared with the sets of the others.
+    pub(crate) fn unknown(motion: &str, rows: usize) -> Self {
+        Self { motion: motion.into(), rows, ..Self::default() }
+    }
 }
 
 impl From<&UnseenMotion> for LeftOut {
     fn from(unseen: &UnseenMotion) -> Self {
-        let UnseenMotion { motion, cost_without, rows, outside, growth, .. } = unseen;
-        let (motion, rows, outside) = (motion.clone(), *rows, *outside);
-        Self { motion, cost: *cost_without, rows, outside, gauge: *growth }
+        Self {
+            motion: unseen.motion.clone(),
+            cost: unseen.cost_without,
+            rows: unseen.rows,
+            outside: unseen.outside,
+            gauge: unseen.growth,
+            initial_gauge: unseen.initial_growth,
+            input_gauge: unseen.input_growth,
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Recordings that a linear program was not made of, beside its sets.
 
 use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
@@ -131,17 +132,53 @@ impl Program<'_> {
     /// holds up to rounding; `None` if no factor suffices.
     #[must_use]
     pub(crate) fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
+        let (states, all) = (sets.initial_set.dimension(), self.shape.radii());
+        [0..states, states..all, 0..all].map(|part| self.factor(sets, part, |_| true))
+    }
+
+    /// Returns the factors of X0 and of U in turn with which the rows of all `programs` hold, up to
+    /// rounding: the factor of the radii of X0 for the rows of first samples, where U has no effect
+    /// yet, and then the factor of the radii of U for all other rows; `None` if no factor suffices.
+    /// X0 keeps its radii where the noise of the sensors limits it (`input_only`).
+    #[must_use]
+    pub(crate) fn growth_in_turn(
+        programs: &[Self],
+        sets: &UncertaintySets,
+        input_only: bool,
+    ) -> [Option<f64>; 2] {
+        let (states, all) = (sets.initial_set.dimension(), 3 * sets.input_set.dimension());
+        let largest = |factor: &dyn Fn(&Self) -> Option<f64>| {
+            let mut factors = programs.iter().map(factor);
+            factors.try_fold(1.0, |max: f64, factor| factor.map(|factor| max.max(factor)))
+        };
+        if input_only {
+            return [Some(1.0), largest(&|own| own.factor(sets, states..all, |_| true))];
+        }
+        let initial = largest(&|own| own.factor(sets, 0..states, |sample| sample == 0));
+        let input = initial.and_then(|factor| {
+            let grown = sets.with_initial_scaled(factor);
+            largest(&|own| own.factor(&grown, states..all, |sample| sample > 0))
+        });
+        [initial, input]
+    }
+
+    /// Returns the factor of some radii with which the rows of some samples hold, up to rounding;
+    /// `None` if no factor suffices.
+    fn factor(
+        &self,
+        sets: &UncertaintySets,
+        part: Range<usize>,
+        is_asked: impl Fn(usize) -> bool,
+    ) -> Option<f64> {
         let unknowns = self.unknowns(sets);
-        let (states, all) = (sets.initial_set.dimension(), unknowns.radius.len());
-        [0..states, states..all, 0..all].map(|part| {
-            let needed = |index: RowIndex| {
-                let excess = self.excess(index, &unknowns);
-                let gains = &self.row(index.0, index.1, index.2).1[part.clone()];
-                let given = dot(gains, &unknowns.radius[part.clone()]);
-                if excess > 0.0 { 1.0 + excess / given } else { 1.0 }
-            };
-            let factor = self.indices(1).map(needed).fold(1.0, f64::max);
-            factor.is_finite().then_some(factor)
-        })
+        let needed = |index: RowIndex| {
+            let excess = self.excess(index, &unknowns);
+            let gains = &self.row(index.0, index.1, index.2).1[part.clone()];
+            let given = dot(gains, &unknowns.radius[part.clone()]);
+            if excess > 0.0 { 1.0 + excess / given } else { 1.0 }
+        };
+        let rows = self.indices(1).filter(|(_, sample, ..)| is_asked(*sample));
+        let factor = rows.map(needed).fold(1.0, f64::max);
+        factor.is_finite().then_some(factor)
     }
 }

@@ -32,6 +32,8 @@ pub(super) fn dependence(model: &Model) -> [Section; 3] {
 fn table_of_left_out(model: &Model) -> Table {
     let is_linear = model.acceleration.is_empty();
     let mut all: Vec<&LeftOut> = model.left_out.iter().collect();
+    // The notion `hull` of a linear model has the factors of X0 and of U in turn.
+    let in_turn = all.iter().any(|left| left.initial_gauge.is_some());
     // What was not computed goes last.
     let size = |left: &LeftOut| match left.cost {
         Some(_) => left.gauge.unwrap_or(f64::INFINITY),
@@ -46,15 +48,24 @@ fn table_of_left_out(model: &Model) -> Table {
             Some(_) => "none found",
         };
         let outside = left.outside.map(|outside| format!("{outside} of {}", left.rows));
-        vec![
+        let times =
+            |gauge: Option<f64>| or(gauge.map(|gauge| format!("x {}", at_least(gauge))), none);
+        let mut row = vec![
             left.motion.clone(),
             or(left.cost.map(four_decimals), "not computed"),
             or(outside, "not computed"),
-            or(left.gauge.map(|gauge| format!("x {}", at_least(gauge))), none),
-        ]
+            times(left.gauge),
+        ];
+        if in_turn {
+            row.extend([left.initial_gauge, left.input_gauge].map(times));
+        }
+        row
     };
     let cost = if is_linear { "cost of the sets" } else { "cost of the linearised sets" };
-    let header = ["without motion", cost, "its rows outside", "factor needed"];
+    let mut header = vec!["without motion", cost, "its rows outside", "factor needed"];
+    if in_turn {
+        header.extend(["X0 at start", "then U"]);
+    }
     Table::new(header, all.iter().map(row).collect()).cut_to(MOST_MOTIONS)
 }
 

@@ -68,7 +68,8 @@ impl Finding {
     }
 
     /// Adds a number; a number that is not finite, which JSON does not have, is left out.
-    pub(crate) fn with(mut self, name: &str, value: f64) -> Self {
+    #[must_use]
+    pub fn with(mut self, name: &str, value: f64) -> Self {
         if value.is_finite() {
             self.numbers.insert(name.into(), value);
         }
@@ -76,7 +77,8 @@ impl Finding {
     }
 
     /// Sets the place.
-    pub(crate) fn at(self, place: impl Into<String>) -> Self {
+    #[must_use]
+    pub fn at(self, place: impl Into<String>) -> Self {
         Self { place: Some(place.into()), ..self }
     }
 

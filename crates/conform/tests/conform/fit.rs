@@ -323,6 +323,9 @@ fn motions_are_left_out_of_the_fit_as_a_calibration_leaves_them_out() {
         // The model reports this growth, not the growth for a fit that has seen the motion.
         assert_eq!(model.left_out[motion].gauge, unseen.growth);
         assert_eq!(model.left_out[motion].outside, unseen.outside);
+        assert!(unseen.initial_growth.is_some() && unseen.input_growth.is_some(), "{unseen:?}");
+        assert_eq!(model.left_out[motion].initial_gauge, unseen.initial_growth);
+        assert_eq!(model.left_out[motion].input_gauge, unseen.input_growth);
     }
     let unknown = carry_over(&all, "motion7", None, &[1.0; 6], &Silent).unwrap_err().to_string();
     assert!(unknown.contains("motion0, motion1, motion2"), "{unknown}");

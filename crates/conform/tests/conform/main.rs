@@ -18,6 +18,7 @@ mod plausibility;
 mod read_once;
 mod sampled_states;
 mod schunk;
+mod stiction;
 mod synthetic;
 mod traces;
 mod warmth;

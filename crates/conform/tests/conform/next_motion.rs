@@ -206,6 +206,42 @@ fn a_motion_left_out_is_as_a_separate_conformance_and_check_find_it() {
     assert!(found.left_out[3].gauge.unwrap() > 1.2, "{:?}", found.left_out);
 }
 
+/// Sets in which X0 and U have grown by the two factors enclose the motion, and smaller ones do
+/// not.
+#[test]
+fn x0_and_u_grow_one_after_the_other_until_they_enclose_a_motion() {
+    let folder = recorded([0.3, 0.4, 0.6, 1.0]);
+    let found = conform_all(&read(&two_joints(), folder.path(), &[], &settings(&[])));
+    let (mut of_starts, mut of_inputs) = (0, 0);
+    for left in &found.left_out {
+        let others: Vec<&str> = SUITES.into_iter().filter(|name| *name != left.motion).collect();
+        let fit = read(&two_joints(), folder.path(), &others, &settings(&[]));
+        let alone = conform_all(&fit);
+        let model = Model::new(&fit, &alone);
+        let own = read(&two_joints(), folder.path(), &[&left.motion], &model.settings);
+        let holds = |factors: [f64; 2]| {
+            let mut sets = alone.sets.clone();
+            for (set, factor) in
+                [&mut sets.initial_set, &mut sets.input_set].into_iter().zip(factors)
+            {
+                set.radius.iter_mut().for_each(|radius| *radius *= factor);
+            }
+            check(&model, &own, &Tube::new(&own, sets).unwrap()).unwrap().verdict.conformant
+        };
+        let [initial, input] = [left.initial_gauge, left.input_gauge].map(Option::unwrap);
+        assert!(holds([initial, input].map(|factor| factor * (1.0 + 1e-4))), "{left:?}");
+        if initial > 1.001 {
+            of_starts += 1;
+            assert!(!holds([initial * 0.999, 10.0 * input]), "U has no effect at the start");
+        }
+        if input > 1.001 {
+            of_inputs += 1;
+            assert!(!holds([initial, input * 0.999]), "{left:?}");
+        }
+    }
+    assert!(of_starts > 0 && of_inputs > 0, "{:?}", found.left_out);
+}
+
 #[test]
 fn motions_of_one_run_decide_nothing_at_their_first_sample() {
     let (robot, times, mut random) = (two_joints(), grid(0.01, 10), Random(5));

@@ -1,7 +1,6 @@
 //! The tables as texts, in the paper's layout, with its numbers beside ours.
 
 use reachtube_abstraction::ModelKind;
-use reachtube_conform::Notion;
 use reachtube_reach::Disturbance;
 
 use super::coverage::{Coverage, CoverageRow};
@@ -75,12 +74,8 @@ impl Table2Case {
             std::iter::once(format!("joint{}", joint + 1)).chain(cells).collect()
         };
         let header = ["joint", "X0 q [rad]", "paper", "X0 qd [rad/s]", "paper", "U [N m]", "paper"];
-        let (notion, disturbance) = match (self.notion, self.disturbance) {
-            (Notion::Hull, by) => ("each state by itself", by),
-            (Notion::PhasePlane, by) => ("position and velocity of each joint together", by),
-            (_, by) => ("all states together", by),
-        };
-        let disturbance = match disturbance {
+        let notion = self.notion.states_together();
+        let disturbance = match self.disturbance {
             Disturbance::Constant => "constant disturbance",
             Disturbance::Sample => "disturbance held over samples",
             Disturbance::Measurable => "measurable disturbance",

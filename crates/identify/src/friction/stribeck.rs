@@ -196,15 +196,14 @@ mod tests {
         let mut generator = SplitMix64::seed_from_u64(seed);
         let mut random = || generator.random::<f64>() - 0.5;
         let sample = |k: usize| {
-            let t = 0.02 * k as f64;
+            let t = 0.06 * k as f64;
             let (qd, qdd) = (0.6 * (0.7 * t).sin(), 0.42 * (0.7 * t).cos());
             let load = 5.0 * (0.11 * t).cos();
             let rise = excess / (qd * qd / 0.0064).exp();
-            let torque =
-                (3.0 + rise) * qd / qd.abs() + 6.0 * qd + 1.7 * qdd + 0.1 * random() * 12f64.sqrt();
+            let torque = (3.0 + rise) * qd / qd.abs() + 6.0 * qd + 1.7 * qdd + 0.2 * random();
             FrictionSample { qd, qdd, load, torque, factors: [1.0; 2] }
         };
-        let samples: Vec<_> = (1..9000).map(sample).filter(|s| s.qd.abs() > slowest).collect();
+        let samples: Vec<_> = (1..3000).map(sample).filter(|s| s.qd.abs() > slowest).collect();
         fit_with_stribeck("joint", &samples, 0.6).unwrap()
     }
 

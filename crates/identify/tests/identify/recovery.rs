@@ -228,4 +228,11 @@ fn undetermined_parameters_are_named() {
         "{:?}",
         found.warnings
     );
+    // Joint 6 rests, so that nothing shows the inertia of its motor.
+    let [rest, moves] = ["joint6 feels (nothing shows it)", "joint2 feels"];
+    let open = |part: &str| found.warnings.iter().any(|warning| warning.contains(part));
+    assert!(open(rest) && !open(moves), "{:?}", found.warnings);
+    let inertia = &found.inertia.diagonal;
+    assert!(inertia[5].standard_error.is_infinite(), "{inertia:?}");
+    assert!(inertia[1].standard_error < 0.5 * inertia[1].least_squares, "{inertia:?}");
 }

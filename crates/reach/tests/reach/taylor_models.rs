@@ -61,10 +61,10 @@ fn laub_loomis_is_enclosed_tightly() {
         let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[w; 7]);
         let f = systems::laub_loomis_components();
         let flowpipe =
-            contain_ten_thousand(&laub_loomis(), &f, start, (0.02, 1001), &of_order(order));
-        let width = flowpipe.sample(1000)[3].width();
+            contain_ten_thousand(&laub_loomis(), &f, start, (0.05, 401), &of_order(order));
+        let width = flowpipe.sample(400)[3].width();
         assert!(width > inner && width < 1.06 * inner, "W = {w}: x4 is {width} wide");
-        let highest = (0..1000).map(|k| flowpipe.step(k)[3].hi()).fold(f64::MIN, f64::max);
+        let highest = (0..400).map(|k| flowpipe.step(k)[3].hi()).fold(f64::MIN, f64::max);
         assert!(highest < bound, "W = {w}: x4 up to {highest}");
     }
 }

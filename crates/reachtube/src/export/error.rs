@@ -71,9 +71,9 @@ pub enum ExportError {
         /// The suite or run.
         case: String,
     },
-    /// A robot or a file that the shield SaRA cannot have.
+    /// A robot, a file or a setting that the tool cannot have.
     #[error("{place}: {problem}; {remedy}")]
-    Shield {
+    Refused {
         /// The file, line and key, or the robot and joint.
         place: String,
         /// The problem.

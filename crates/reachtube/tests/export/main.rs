@@ -1,6 +1,7 @@
 //! Every exported file is read back, and holds the model bit by bit.
 
 mod affine;
+mod armour;
 mod automata;
 mod cases;
 mod dynamics;

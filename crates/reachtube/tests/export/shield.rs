@@ -11,7 +11,7 @@ use reachtube::verify::Capsules;
 use crate::cases::{Numbers, every_kind};
 
 /// An arm of three hinges whose axes and frames lie askew.
-fn hinges() -> Robot {
+pub(crate) fn hinges() -> Robot {
     let mut description = every_kind().description().clone();
     description.joints[1].kind = description.joints[0].kind;
     description.joints[1].axis = Some([0.6, 0.0, 0.8]);
@@ -19,7 +19,7 @@ fn hinges() -> Robot {
 }
 
 /// Two capsules on the first link, one on each other.
-fn capsules(robot: &Robot) -> Capsules {
+pub(crate) fn capsules(robot: &Robot) -> Capsules {
     let capsule = |link: usize, to: f64, radius: f64| {
         format!(
             "[[capsule]]\nlink = {link}\nfrom = [0.02, 0, 0]\nto = [{to}, 0.1, 0.3]\n\

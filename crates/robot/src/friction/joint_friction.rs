@@ -93,11 +93,8 @@ impl Friction {
     pub fn range_near_zero(&self, load: Interval, velocity: Interval) -> Interval {
         let positive = Interval::new(0.0, f64::MAX).expect("an interval");
         let negative = Interval::new(-f64::MAX, 0.0).expect("an interval");
-        let over_parts = |velocity: Interval, forward: bool| {
-            parts(velocity).map(|v| self.moving(load, v, forward)).reduce(Interval::hull)
-        };
-        let forward = velocity.intersection(positive).and_then(|v| over_parts(v, true));
-        let backward = velocity.intersection(negative).and_then(|v| over_parts(v, false));
+        let forward = velocity.intersection(positive).map(|v| self.moving(load, v, true));
+        let backward = velocity.intersection(negative).map(|v| self.moving(load, v, false));
         // Standstill lies between the limits of both directions, which the hull contains.
         match (forward, backward) {
             (Some(forward), Some(backward)) => forward.hull(backward).hull(Interval::point(0.0)),
@@ -107,6 +104,20 @@ impl Friction {
 
     /// Encloses the torque \[N m\] for velocities of one direction, with its limit at standstill.
     fn moving(&self, load: Interval, velocity: Interval, forward: bool) -> Interval {
+        let coulomb = self.coulomb_moving(load, forward);
+        let Some(Stribeck { excess, speed }) = self.stribeck else {
+            return coulomb + self.viscous_range(velocity);
+        };
+        let excess = Interval::point(if forward { excess } else { -excess });
+        let of_part = |v: Interval| {
+            let decay = (-(v / Interval::point(speed)).sqr()).exp();
+            coulomb + self.viscous.torque(&v) + excess * decay
+        };
+        parts(velocity).map(of_part).reduce(Interval::hull).expect("there are parts")
+    }
+
+    /// Encloses Coulomb friction \[N m\] in one direction of motion.
+    fn coulomb_moving(&self, load: Interval, forward: bool) -> Interval {
         let of_line = |line: LoadLine, load: Option<Interval>| {
             load.map(|load| Interval::point(line.offset) + Interval::point(line.slope) * load)
         };
@@ -119,11 +130,18 @@ impl Friction {
         } else {
             [of_line(braking_backward, positive), of_line(driving_backward, negative)]
         };
-        let coulomb = lines.into_iter().flatten().reduce(Interval::hull);
-        let dry = coulomb.unwrap_or(Interval::point(0.0)) + self.viscous.torque(&velocity);
-        let Some(Stribeck { excess, speed }) = self.stribeck else { return dry };
-        let decay = (-(velocity / Interval::point(speed)).sqr()).exp();
-        dry + Interval::point(if forward { excess } else { -excess }) * decay
+        lines.into_iter().flatten().reduce(Interval::hull).unwrap_or(Interval::point(0.0))
+    }
+
+    /// Encloses viscous friction \[N m\]: between its values at both ends where it rises all over
+    /// the velocities, and by parts elsewhere.
+    fn viscous_range(&self, velocity: Interval) -> Interval {
+        let torque = |v: Interval| self.viscous.torque(&v);
+        if self.viscous.slope(&velocity).lo() >= 0.0 {
+            let [low, high] = [velocity.lo(), velocity.hi()].map(Interval::point);
+            return torque(low).hull(torque(high));
+        }
+        parts(velocity).map(torque).reduce(Interval::hull).expect("there are parts")
     }
 }
 

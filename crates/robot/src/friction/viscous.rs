@@ -72,7 +72,7 @@ impl Viscous {
     ///
     /// Over `Interval`: an outer enclosure.
     pub fn slope<S: Scalar>(&self, qd: &S) -> S {
-        S::from(self.v1)
-            + (S::from(2.0 * self.v2) + S::from(3.0 * self.v3) * qd.clone()) * qd.clone()
+        let cubic = S::from(3.0) * S::from(self.v3);
+        S::from(self.v1) + (S::from(2.0 * self.v2) + cubic * qd.clone()) * qd.clone()
     }
 }

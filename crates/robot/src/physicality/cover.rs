@@ -11,11 +11,11 @@ const LEAST_WIDTH: f64 = 1e-6;
 
 /// A box of positions with enclosures of their sines and cosines.
 #[derive(Clone)]
-struct PositionBox {
+pub(super) struct PositionBox {
     kinds: Vec<JointKind>,
-    q: Vec<Interval>,
-    sin: Vec<Interval>,
-    cos: Vec<Interval>,
+    pub(super) q: Vec<Interval>,
+    pub(super) sin: Vec<Interval>,
+    pub(super) cos: Vec<Interval>,
 }
 
 impl PositionBox {
@@ -25,8 +25,20 @@ impl PositionBox {
         (self.sin[joint], self.cos[joint]) = self.kinds[joint].sin_cos(&q);
     }
 
+    /// Returns the joints that can be bisected, whose interval is wide enough. M does not depend on
+    /// the first joint.
+    pub(super) fn wide_joints(&self) -> impl Iterator<Item = usize> {
+        (1..self.q.len()).filter(|i| self.q[*i].width() > LEAST_WIDTH)
+    }
+
+    /// Returns the box in which one joint is fixed at its middle.
+    pub(super) fn with_middle(&self, joint: usize) -> Self {
+        let middle = self.q[joint].mid();
+        self.part(joint, middle, middle)
+    }
+
     /// Returns the two halves along one joint.
-    fn halves(&self, joint: usize) -> [Self; 2] {
+    pub(super) fn halves(&self, joint: usize) -> [Self; 2] {
         let q = self.q[joint];
         [self.part(joint, q.lo(), q.mid()), self.part(joint, q.mid(), q.hi())]
     }
@@ -85,7 +97,7 @@ impl Robot {
     }
 
     /// Returns the box of all positions within the limits.
-    fn position_limits_box(&self) -> PositionBox {
+    pub(super) fn position_limits_box(&self) -> PositionBox {
         let limits = self.joints.iter().map(|j| j.position_limits);
         let q: Vec<_> =
             limits.map(|[low, high]| Interval::point(low).hull(Interval::point(high))).collect();
@@ -155,15 +167,10 @@ impl<'a> Cover<'a> {
     /// Returns the two joints to bisect: the joints with the largest slack if their position is
     /// fixed at the middle.
     ///
-    /// Bisecting two joints at a time halves the number of evaluations. M does not depend on the
-    /// first joint.
+    /// Bisecting two joints at a time halves the number of evaluations.
     fn best_splits(&mut self, positions: &PositionBox) -> Vec<usize> {
-        let wide = (1..positions.q.len()).filter(|i| positions.q[*i].width() > LEAST_WIDTH);
-        let scored = wide.map(|i| {
-            let middle = positions.q[i].mid();
-            (i, self.slack(&positions.part(i, middle, middle)))
-        });
-        let mut scored: Vec<_> = scored.collect();
+        let wide = positions.wide_joints();
+        let mut scored: Vec<_> = wide.map(|i| (i, self.slack(&positions.with_middle(i)))).collect();
         scored.sort_by(|a, b| b.1.total_cmp(&a.1));
         scored.iter().map(|(i, _)| *i).take(2).collect()
     }

@@ -63,3 +63,51 @@ fn gravity_parameters_do_not_enter_the_mass_matrix() {
     assert_eq!(robot.mass_matrix(&[0.4; 6]), Robot::lwa4p().mass_matrix(&[0.4; 6]));
     assert_ne!(robot.gravity_torque(&[0.4; 6]), Robot::lwa4p().gravity_torque(&[0.4; 6]));
 }
+
+/// Checks that sampled eigenvalues lie within the bounds. Returns how far the bounds are from the
+/// samples' extremes, as a part of these.
+fn slack_of_bounds(robot: &Robot, boxes: usize) -> [f64; 2] {
+    let [least, largest] = robot.mass_matrix_bounds(boxes);
+    let mut seen = [f64::INFINITY, 0.0_f64];
+    let mut state = 1_u64;
+    let mut unit = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for _ in 0..20_000 {
+        let limits = robot.joints().iter().map(|joint| joint.position_limits);
+        let q: Vec<f64> = limits.map(|[low, high]| low + (high - low) * unit()).collect();
+        let values = robot.mass_matrix(&q).symmetric_eigenvalues();
+        seen = [seen[0].min(values.min()), seen[1].max(values.max())];
+    }
+    assert!(least <= seen[0] && seen[1] <= largest, "{least} {largest} {seen:?}");
+    [1.0 - least / seen[0], largest / seen[1] - 1.0]
+}
+
+#[test]
+fn bounds_of_the_mass_matrix_hold_sampled_eigenvalues() {
+    let text = include_str!("../../examples/double_pendulum.toml");
+    let pendulum = Robot::from_toml(text, "double pendulum").unwrap();
+    let slack = slack_of_bounds(&pendulum, 3000);
+    assert!(slack.iter().all(|slack| *slack < 0.005), "{slack:?}");
+    // Links that are no bodies have no floor for the least eigenvalue.
+    let [few, more] = [50, 500].map(|boxes| slack_of_bounds(&Robot::lwa4p(), boxes));
+    assert!(more[0] < few[0] && more[1] < few[1], "{few:?} {more:?}");
+}
+
+#[test]
+#[ignore = "needs the recordings in ../shared"]
+fn the_armatures_are_a_floor_of_the_mass_matrix_of_bodies() {
+    for name in ["ur5", "dh6"] {
+        let mut description = oracle_robot(name).description().clone();
+        for joint in &mut description.joints {
+            joint.gear_ratio = None;
+            joint.rotor_inertia = None;
+            joint.armature = Some(2.0);
+        }
+        let robot = Robot::from_description(&description).unwrap();
+        let [few, more] = [50, 500].map(|boxes| slack_of_bounds(&robot, boxes));
+        assert!(more[0] < 0.1 && more[1] < few[1], "{name}: {few:?} {more:?}");
+        assert!(robot.mass_matrix_bounds(1)[0] >= 2.0, "{name}");
+    }
+}

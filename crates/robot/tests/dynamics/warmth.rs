@@ -228,3 +228,20 @@ fn friction_at_standstill_is_every_torque_up_to_breakaway() {
     assert!((range.lo() + 3.4).abs() < 1e-14 && range.lo() <= -3.4, "{range:?}");
     assert!(Friction::default().range_near_zero(zero, zero).contains(0.0));
 }
+
+#[test]
+fn friction_that_rises_lies_between_its_values_at_both_ends() {
+    let (load, velocity) = (Interval::point(2.0), Interval::new(0.1, 0.9).unwrap());
+    for joint in Robot::lwa4p().joints() {
+        let at = |v: f64| joint.friction.dry_torque(2.0, v) + joint.friction.viscous.torque(&v);
+        let (least, most) = (at(0.1), at(0.9));
+        let range = joint.friction.range_near_zero(load, velocity);
+        assert!((range.lo() - least).abs() < 1e-13 && range.lo() <= least + 1e-14, "{range:?}");
+        assert!((range.hi() - most).abs() < 1e-13 && range.hi() >= most - 1e-14, "{range:?}");
+    }
+    // The greatest torque of v - v³ lies between the ends, at 1/√3.
+    let viscous = Viscous { v1: 1.0, v2: 0.0, v3: -1.0 };
+    let friction = Friction { viscous, ..Friction::default() };
+    let range = friction.range_near_zero(load, Interval::new(0.0, 1.0).unwrap());
+    assert!(range.lo() <= 0.0 && (0.3849..0.45).contains(&range.hi()), "{range:?}");
+}

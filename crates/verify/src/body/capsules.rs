@@ -1,4 +1,6 @@
-use reachtube_robot::{Robot, Urdf};
+use std::path::Path;
+
+use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use crate::body::capsule::Capsule;
 use crate::body::fit::enclosing_capsule;
@@ -22,6 +24,21 @@ impl Capsules {
         let known = EMBEDDED.iter().find(|(name, _)| *name == robot.name());
         let (name, text) = known.ok_or_else(|| Error::NoCapsules { robot: robot.name().into() })?;
         Self::from_toml(text, name, robot)
+    }
+
+    /// Reads the capsules of a TOML or URDF file; without one, takes the embedded ones.
+    ///
+    /// # Errors
+    ///
+    /// As [`embedded`](Self::embedded), [`from_toml`](Self::from_toml) and
+    /// [`of_urdf`](Self::of_urdf); a file that cannot be read.
+    pub fn open(path: Option<&Path>, robot: &Robot) -> Result<Self> {
+        let Some(path) = path else { return Self::embedded(robot) };
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {
+            return Self::of_urdf(&Urdf::load(path, &UrdfOptions::default())?);
+        }
+        let text = reachtube_files::read_text(path, "name a TOML or URDF file with capsules")?;
+        Self::from_toml(&text, &path.display().to_string(), robot)
     }
 
     /// Reads `[[capsule]]` tables with `link`, `from`, `to` and `radius`; `origin` names the text

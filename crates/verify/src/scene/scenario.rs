@@ -135,7 +135,13 @@ impl Scenario {
         Self::parse(text, &path.display().to_string(), folder)
     }
 
-    fn parse(text: String, origin: &str, folder: &Path) -> Result<Self> {
+    /// Reads a scenario from TOML; `origin` names the text in errors, and paths are relative to
+    /// `folder`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Syntax`].
+    pub fn parse(text: String, origin: &str, folder: &Path) -> Result<Self> {
         let file: File = toml::from_str(&text)
             .map_err(|e| Error::Syntax { origin: origin.into(), message: e.to_string() })?;
         let capsules = file.capsules.as_ref().map(|path| folder.join(path));

@@ -1,6 +1,8 @@
 //! The table of stopping times and distances that ISO 10218-1 asks for in Annex B.
 
 use rayon::prelude::*;
+use reachtube_conform::Finding;
+use reachtube_conform::result::{Code, Severity};
 use reachtube_reach::Hyperrectangle;
 use reachtube_robot::{InertiaPoint, LinkInertia, Robot};
 use reachtube_scalar::Interval;
@@ -28,7 +30,8 @@ pub struct AnnexB {
     /// The rows.
     pub rows: Vec<AnnexRow>,
     /// What is missing in the table, and why.
-    pub notes: Vec<String>,
+    #[serde(skip)]
+    pub notes: Vec<Finding>,
 }
 
 /// Stops in which one joint moves, the worse of both directions.
@@ -96,19 +99,21 @@ pub fn annex_b(robot: &Robot, brakes: &Brakes, input_set: &Hyperrectangle) -> Re
     let unknown = robot.joints().iter().filter(|joint| joint.velocity_limit.is_none());
     if let Some(joint) = unknown.into_iter().next() {
         let name = &joint.name;
-        notes.push(format!(
-            "There is no table, since the greatest speed of {name} is not known; give \
-             velocity_limit in the robot\u{2019}s description."
-        ));
+        notes.push(
+            missing(format!(
+                "There is no table, since the greatest speed of {name} is not known; give \
+                 velocity_limit in the robot\u{2019}s description."
+            ))
+            .at(name),
+        );
         return Ok(AnnexB { rows: Vec::new(), notes });
     }
     let loads: &[f64] = if brakes.payload.is_some() { &PARTS } else { &[0.0] };
     if brakes.payload.is_none() {
-        notes.push(
-            "No load is given, so all rows are without load; `payload` in the file of the \
-                    brakes gives one."
-                .into(),
-        );
+        notes.push(missing(
+            "No load is given, so all rows are without load; `payload` in the file of the brakes \
+             gives one.",
+        ));
     }
     let table = Table { robot, brakes, loaded: loaded(robot, brakes.payload, loads)? };
     let full = |joint| Case { joint, speed: 1.0, extension: 1.0, load: loads[loads.len() - 1] };
@@ -120,11 +125,9 @@ pub fn annex_b(robot: &Robot, brakes: &Brakes, input_set: &Hyperrectangle) -> Re
     let joints: Vec<usize> = rows.iter().map(|(joint, _)| *joint).collect();
     let mut rows: Vec<AnnexRow> = rows.into_iter().map(|(_, row)| row).collect();
     match Category::one(brakes, input_set) {
-        None => notes.push(
-            "There is no category 1, since the file of the brakes has no \
-                            `deceleration`."
-                .into(),
-        ),
+        None => notes.push(missing(
+            "There is no category 1, since the file of the brakes has no `deceleration`.",
+        )),
         Some(category) => {
             let cases: Vec<Case> = joints.iter().flat_map(|joint| cases(*joint, loads)).collect();
             rows.extend(
@@ -134,6 +137,11 @@ pub fn annex_b(robot: &Robot, brakes: &Brakes, input_set: &Hyperrectangle) -> Re
     }
     notes.extend(table.overloaded(&rows));
     Ok(AnnexB { rows, notes })
+}
+
+/// Returns what is missing in the table.
+fn missing(text: impl Into<String>) -> Finding {
+    Finding::new(Severity::Info, Code::TableIncomplete, text)
 }
 
 /// Returns all cases of a joint.
@@ -208,8 +216,8 @@ impl Table<'_> {
         known.map_or(self.robot, |(_, robot)| robot)
     }
 
-    /// Returns which brake does not hold an arm from which no standstill is proved, as a sentence.
-    fn overloaded(&self, rows: &[AnnexRow]) -> Option<String> {
+    /// Returns which brake does not hold an arm from which no standstill is proved.
+    fn overloaded(&self, rows: &[AnnexRow]) -> Option<Finding> {
         let excess = |row: &AnnexRow| {
             let load = self.robot(row.load).gravity_torque(&row.posture);
             let joints = load.iter().zip(&self.brakes.torque).enumerate();
@@ -221,15 +229,19 @@ impl Table<'_> {
         let open = rows.iter().filter(|row| !row.is_proved()).filter_map(excess);
         let (most, joint, load, least) = open.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let name = &self.robot.joints()[joint].name;
+        let weak = |text: String| Finding::new(Severity::Warning, Code::BrakeWeak, text);
         Some(if most > 0.0 {
-            format!(
+            let text = format!(
                 "Some rows have no proved standstill: gravity turns {name} with up to {load:.1} \
                  N m, and its brake is only sure to hold {least} N m."
-            )
+            );
+            weak(text).at(name).with("load", load).with("least_torque", least)
         } else {
-            "Some rows have no proved standstill: the brakes have too little torque to spare for \
-             their load, or the drives\u{2019} torque is too uncertain."
-                .into()
+            weak(
+                "Some rows have no proved standstill: the brakes have too little torque to spare \
+                 for their load, or the drives\u{2019} torque is too uncertain."
+                    .into(),
+            )
         })
     }
 

@@ -2,6 +2,7 @@ use reachtube_reach::Hyperrectangle;
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 
+use crate::error::{Error, Result};
 use crate::stop::brakes::Brakes;
 use crate::stop::deceleration::Deceleration;
 use crate::stop::path::Path;
@@ -28,6 +29,25 @@ impl Category {
     pub fn one(brakes: &Brakes, input_set: &Hyperrectangle) -> Option<Self> {
         let limits = brakes.deceleration.clone()?;
         Some(Self::One { limits, input_set: input_set.clone() })
+    }
+
+    /// Returns the category of a number, 0 or 1, as [`one`](Self::one) does; `origin` names the
+    /// brakes' file in errors.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoDeceleration`] for category 1 without a deceleration.
+    pub fn numbered(
+        number: u8,
+        brakes: &Brakes,
+        origin: &str,
+        input_set: &Hyperrectangle,
+    ) -> Result<Self> {
+        match number {
+            0 => Ok(Self::Zero),
+            _ => Self::one(brakes, input_set)
+                .ok_or_else(|| Error::NoDeceleration { origin: origin.into() }),
+        }
     }
 
     /// Returns the number of the category, 0 or 1.

@@ -7,6 +7,7 @@ pub(crate) mod brakes;
 pub(crate) mod category;
 pub(crate) mod deceleration;
 mod extension;
+mod findings;
 pub(crate) mod path;
 pub(crate) mod recorded;
 pub(crate) mod rule;

@@ -64,6 +64,16 @@ pub fn recorded_stops(
     Ok(all)
 }
 
+/// Returns the recorded stop that is furthest beyond the proved one; `None` if all are within.
+pub(super) fn outside(recorded: &[RecordedStop]) -> Option<&RecordedStop> {
+    let beyond = |stop: &RecordedStop| {
+        let [low, high] = stop.proved_way;
+        (low - stop.way).max(stop.way - high)
+    };
+    let outside = recorded.iter().filter(|stop| !stop.is_within);
+    outside.max_by(|a, b| beyond(a).total_cmp(&beyond(b)))
+}
+
 fn compared(
     robot: &Robot,
     brakes: &Brakes,

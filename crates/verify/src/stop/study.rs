@@ -1,7 +1,8 @@
 //! All that is asked about the stops of a robot.
 
-use reachtube_conform::{Problem, UncertaintySets};
+use reachtube_conform::{Finding, Problem, UncertaintySets};
 use reachtube_recordings::RunSource;
+use reachtube_robot::JointKind;
 use serde::Serialize;
 
 use crate::error::Result;
@@ -9,7 +10,8 @@ use crate::stop::along::{WorstStop, stops_along};
 use crate::stop::annex_b::{AnnexB, annex_b};
 use crate::stop::brakes::Brakes;
 use crate::stop::category::Category;
-use crate::stop::recorded::{RecordedStop, recorded_stops};
+use crate::stop::findings::findings;
+use crate::stop::recorded::{RecordedStop, outside, recorded_stops};
 
 /// What is asked about the stops of a robot.
 #[derive(Debug)]
@@ -37,6 +39,8 @@ pub struct StopStudy {
     pub annex_b: Option<AnnexB>,
     /// Recorded stops beside the proved ones.
     pub recorded: Vec<RecordedStop>,
+    /// What follows, statement by statement: the verdict first.
+    pub findings: Vec<Finding>,
 }
 
 /// Encloses the stops from recorded motions, the stops of the table, and recorded stops. The error
@@ -57,12 +61,12 @@ pub fn stop_study(
     let StopQuestion { brakes, category, every, table, recorded } = *question;
     let robot = problem.robot();
     let recorded = recorded.map(|source| recorded_stops(robot, brakes, category, source));
-    Ok(StopStudy {
-        category: category.number(),
-        recorded: recorded.transpose()?.unwrap_or_default(),
-        annex_b: table.then(|| annex_b(robot, brakes, &sets.input_set)).transpose()?,
-        stops: stops_along(problem, brakes, category, every),
-    })
+    let recorded = recorded.transpose()?.unwrap_or_default();
+    let annex_b = table.then(|| annex_b(robot, brakes, &sets.input_set)).transpose()?;
+    let stops = stops_along(problem, brakes, category, every);
+    let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
+    let findings = findings(&stops, annex_b.as_ref(), &recorded, &unit);
+    Ok(StopStudy { category: category.number(), stops, annex_b, recorded, findings })
 }
 
 impl StopStudy {
@@ -75,11 +79,6 @@ impl StopStudy {
     /// Returns the recorded stop that is furthest beyond the proved one; `None` if all are within.
     #[must_use]
     pub fn outside(&self) -> Option<&RecordedStop> {
-        let beyond = |stop: &RecordedStop| {
-            let [low, high] = stop.proved_way;
-            (low - stop.way).max(stop.way - high)
-        };
-        let outside = self.recorded.iter().filter(|stop| !stop.is_within);
-        outside.max_by(|a, b| beyond(a).total_cmp(&beyond(b)))
+        outside(&self.recorded)
     }
 }

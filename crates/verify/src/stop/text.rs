@@ -1,6 +1,7 @@
 //! Stops as text.
 
-use reachtube_conform::result::Table;
+use reachtube_conform::Finding;
+use reachtube_conform::result::{Code, Table};
 use reachtube_scalar::number::{at_least, significant};
 
 use crate::stop::along::WorstStop;
@@ -13,8 +14,12 @@ impl StopStudy {
     /// 10218-1 and the recorded stops; ways are in `unit`.
     #[must_use]
     pub fn text(&self, unit: &str) -> String {
-        let mut parts = vec![self.verdict(unit)];
-        parts.extend(self.skipped());
+        let sentences = |about_table: bool| {
+            let findings = self.findings.iter();
+            let chosen = findings.filter(move |one| is_about_table(one) == about_table);
+            chosen.map(|finding| finding.text.clone())
+        };
+        let mut parts: Vec<String> = sentences(false).collect();
         if !self.stops.is_empty() {
             parts.push(self.motions(unit).to_string());
         }
@@ -24,56 +29,13 @@ impl StopStudy {
             if !full.is_empty() {
                 parts.push(annex_table(&full, unit).to_string());
             }
-            parts.extend(table.notes.iter().cloned());
         }
+        parts.extend(sentences(true));
         if !self.recorded.is_empty() {
             parts.push(recorded_table(&self.recorded, unit).to_string());
         }
         let parts: Vec<&str> = parts.iter().map(|part| part.trim_end()).collect();
         parts.join("\n\n") + "\n"
-    }
-
-    /// Returns the verdict as a sentence.
-    #[must_use]
-    pub fn verdict(&self, unit: &str) -> String {
-        if let Some(outside) = self.outside() {
-            return beyond(outside, unit);
-        }
-        let suites: Vec<&WorstStop> = self.of_suites().collect();
-        let samples: usize = suites.iter().map(|worst| worst.samples).sum();
-        let open = samples - suites.iter().map(|worst| worst.proved).sum::<usize>();
-        if samples == 0 {
-            return "not proved: no sample has a stop that could be followed; give longer motions, \
-                    or a greater deceleration"
-                .into();
-        }
-        if open == 0 {
-            return format!(
-                "stands: from each of {samples} samples every joint comes to a standstill"
-            );
-        }
-        format!(
-            "not proved: from {open} of {samples} samples no standstill is proved; the brakes may \
-             be too weak for the load, or the recorded states too far apart"
-        )
-    }
-
-    /// Returns one of the worst stops of each suite, whose numbers of samples are the suite's.
-    fn of_suites(&self) -> impl Iterator<Item = &WorstStop> {
-        let first = self.stops.first().map(|worst| &worst.joint);
-        self.stops.iter().filter(move |worst| Some(&worst.joint) == first)
-    }
-
-    /// Returns how many samples were left out, as a sentence.
-    fn skipped(&self) -> Option<String> {
-        let count: usize = self.of_suites().map(|worst| worst.skipped).sum();
-        let noun = if count == 1 { "sample is" } else { "samples are" };
-        (count > 0).then(|| {
-            format!(
-                "{count} {noun} left out, since the deceleration from there would lead beyond the \
-                 end of the recording."
-            )
-        })
     }
 
     /// Returns the table of the motions.
@@ -139,30 +101,9 @@ pub fn recorded_table(stops: &[RecordedStop], unit: &str) -> Table {
     Table { title, ..Table::new(header, stops.iter().map(row).collect()) }
 }
 
-/// Returns a recorded stop that is not within the proved one, as a sentence.
-fn beyond(stop: &RecordedStop, unit: &str) -> String {
-    let RecordedStop { recording, joint, .. } = stop;
-    let Some(time) = stop.time else {
-        return format!(
-            "not covered: {recording}: {joint} moves until the recording ends; record each stop \
-             to its standstill"
-        );
-    };
-    if stop.proved_time.is_infinite() {
-        return format!(
-            "not proved: {recording}: no standstill is proved from its first state; the brakes may \
-             be too weak for the load"
-        );
-    }
-    format!(
-        "not covered: {recording}: {joint} moves {} {unit} in {time:.3} s, but {} to {} {unit} \
-         in {} s are proved; the brakes may be weaker or slower than their file has it, or the \
-         recording may not begin with the stop",
-        significant(stop.way, 4),
-        significant(stop.proved_way[0], 4),
-        significant(stop.proved_way[1], 4),
-        bound(stop.proved_time)
-    )
+/// Returns whether a finding is about the table of ISO 10218-1.
+fn is_about_table(finding: &Finding) -> bool {
+    matches!(finding.code, Code::TableIncomplete | Code::BrakeWeak)
 }
 
 fn bound(value: f64) -> String {

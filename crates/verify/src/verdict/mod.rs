@@ -2,8 +2,10 @@
 
 pub(crate) mod clearance;
 pub(crate) mod decide;
+pub(crate) mod findings;
 mod gradient;
 mod part_of_step;
+pub(crate) mod stop_verdict;
 mod stopped;
 pub(crate) mod stops;
 pub(crate) mod verification;

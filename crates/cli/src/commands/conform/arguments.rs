@@ -2,15 +2,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 use reachtube::abstraction::ModelKind;
-use reachtube::conform::settings::{Centre, Equations, InitialLimit, Method, NominalStart, States};
-use reachtube::conform::{Group, Notion};
-use reachtube_reach::Disturbance;
+use reachtube::conform::Group;
 
+use super::sets::SetArguments;
 use crate::data_arguments::DataArguments;
 use crate::lock_arguments::LockArguments;
-use crate::option_values::{
-    Choices, DISTURBANCES, INITIAL_LIMITS, MODELS, NOTIONS, choice, numbered_choice, seconds,
-};
+use crate::option_values::{Choices, MODELS, choice, numbered_choice, seconds};
 
 const HELP: &str = "\
 Examples:
@@ -127,120 +124,8 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pub pull: Option<f64>,
-    /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable
-    /// disturbances in any case
-    #[arg(
-        long, hide_short_help = true,
-        help_heading = "Sets",
-        default_value = "sample",
-        value_parser = choice::<Disturbance>(DISTURBANCES)
-    )]
-    pub disturbance: Disturbance,
-    /// Centres of the sets X0 and U
-    #[arg(
-        long, hide_short_help = true,
-        help_heading = "Sets",
-        default_value = "free",
-        value_parser = choice::<Centre>(CENTRES)
-    )]
-    pub centre: Centre,
-    /// Directions in which recordings must lie in the reachable set
-    #[arg(
-        long,
-        help_heading = "Sets",
-        default_value = "hull",
-        value_parser = choice::<Notion>(NOTIONS)
-    )]
-    pub notion: Notion,
-    /// States that the reachable set must enclose
-    #[arg(
-        long, hide_short_help = true,
-        help_heading = "Sets",
-        default_value = "all",
-        value_parser = choice::<States>(STATES)
-    )]
-    pub states: States,
-    /// How far X0 may reach. Where nothing limits it, X0 may take over what U would cover later
-    #[arg(
-        long, hide_short_help = true,
-        help_heading = "Sets",
-        default_value = "none",
-        value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
-    )]
-    pub initial_limit: InitialLimit,
-    /// Weights of the states in the cost: unit (1 for each state); spread (1 over the state's
-    /// largest deviation in the recordings); or 2 or 2n numbers between 1e-9 and 1e9, positions
-    /// first
-    #[arg(
-        long,
-        hide_short_help = true,
-        help_heading = "Sets",
-        default_value = "unit",
-        value_name = "unit|spread|W,W,..",
-        allow_hyphen_values = true
-    )]
-    pub weights: String,
-    /// Measurement noise V: none, fitted, or its radii in rad and rad/s.
-    ///
-    /// Fitted radii are found with the sets and are at most the sensor noise's. Given radii are 2
-    /// or 2n numbers between 0 and 1e9: positions in rad, then velocities in rad/s.
-    #[arg(
-        long,
-        help_heading = "Sets",
-        default_value = "none",
-        value_name = "none|fitted|R,R,..",
-        allow_hyphen_values = true
-    )]
-    pub noise: String,
-    /// Radii of the sensors' noise, 2 or 2n numbers between 0 and 1e9: positions in rad, then
-    /// velocities in rad/s. They limit V of --noise fitted and X0 of --nominal own [default:
-    /// estimated from the recordings]
-    #[arg(
-        long,
-        hide_short_help = true,
-        help_heading = "Sets",
-        value_name = "R,R,..",
-        allow_hyphen_values = true
-    )]
-    pub sensor_noise: Option<String>,
-    /// First state of the nominal motions
-    #[arg(
-        long, hide_short_help = true,
-        help_heading = "Sets",
-        default_value = "mean",
-        value_parser = choice::<NominalStart>(NOMINAL_STARTS)
-    )]
-    pub nominal: NominalStart,
-    /// Equations of motion that nominal motions satisfy.
-    ///
-    /// With the robot's equations U covers only what the robot itself does not explain; this needs
-    /// a linear model.
-    #[arg(
-        long,
-        help_heading = "Model",
-        default_value = "model",
-        value_parser = choice::<Equations>(EQUATIONS)
-    )]
-    pub equations: Equations,
-    /// Motions that are held out from the fit, separated by commas; * and ? match as in M*.
-    ///
-    /// Their names are in runs.csv. The sets found on the other motions are scaled until they
-    /// enclose these too, which bounds the probability that the next motion leaves them.
-    #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
-    pub calibrate: Vec<String>,
-    /// Method that finds the sets
-    #[arg(
-        long, hide_short_help = true,
-        help_heading = "Method",
-        default_value = "program",
-        value_parser = choice::<Method>(METHODS)
-    )]
-    pub method: Method,
-    /// Search for a motion of the model itself near each recording, within these tolerances in rad
-    /// and rad/s: 2 numbers, 0 or more, or none [default: none for a linear model, otherwise
-    /// 0.001,0.01 for the recordings that decide the sets]
-    #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "none|Q,QD")]
-    pub explain: Option<String>,
+    #[command(flatten)]
+    pub sets: SetArguments,
     /// Save the progress of a long search to this file, and continue from it if it exists
     #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "FILE")]
     pub resume: Option<PathBuf>,
@@ -263,27 +148,4 @@ const GROUPS: Choices = &[
     ("coulomb", "Coulomb friction, by quadrant where the quadrants differ"),
     ("warm-up", "viscous friction that changes with the order of a suite's runs"),
     ("payload", "a point mass at the last link's frame"),
-];
-
-const CENTRES: Choices = &[
-    ("free", "any centre"),
-    ("origin", "any centre for which the set contains 0, as in the paper"),
-    ("zero", "the centre is 0"),
-];
-
-const STATES: Choices = &[("all", "positions and velocities"), ("positions", "positions only")];
-
-const NOMINAL_STARTS: Choices = &[
-    ("mean", "the mean of the first states of the suite's runs"),
-    ("own", "each run's own first state"),
-];
-
-const EQUATIONS: Choices = &[
-    ("model", "the model's"),
-    ("robot", "the robot's own; the model describes the deviations from them"),
-];
-
-const METHODS: Choices = &[
-    ("program", "linear programs: one for a linear model, a sequence of them otherwise"),
-    ("bisection", "bisection of one radius after the other, the paper's baseline"),
 ];

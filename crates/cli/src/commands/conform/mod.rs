@@ -2,6 +2,7 @@
 
 mod arguments;
 mod run;
+mod sets;
 mod settings;
 
 pub(crate) use arguments::Arguments;

@@ -8,7 +8,7 @@ use reachtube::recordings::{DataSet, Preparation, Torque};
 use reachtube::write;
 
 use super::arguments::Arguments;
-use super::settings::{basis, explain, settings};
+use super::settings::{basis, settings};
 use crate::error::Result;
 use crate::global::global;
 use crate::outcome::Outcome;
@@ -106,7 +106,7 @@ fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
         .certified(args.certificate.is_some())
         .keep_runs(args.report.is_some())
         .resume(args.resume.clone());
-    if let Some(tolerance) = explain(args)? {
+    if let Some(tolerance) = args.sets.explain()? {
         job = job.explain(tolerance);
     }
     Ok((job, preparation))

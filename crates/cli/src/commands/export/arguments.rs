@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use reachtube::Robot;
 use reachtube::conform::{Keep, Model};
 use reachtube::export::{ExportFile, InputForm, Tool};
 use reachtube::write;
@@ -27,6 +28,8 @@ Tools, what they can mean, and what they cannot:
               cubic one. urdf has no motor inertia; --update changes a URDF that is there
   sara-shield the radius by which the safety shield SaRA must grow each link, proved; limits in
               its file that --update names, cut to what the motions reach
+  armour      the header of the planner ARMOUR, with proved bounds of the mass matrix for all arms
+              within --uncertainty
 Unsupported models are refused. The first lines of each file state what the tool computes.
 
 Examples:
@@ -36,6 +39,8 @@ Examples:
   reachtube export --robot identified.toml --to urdf --update arm.urdf --out robot
   reachtube export --model model.json --to sara-shield --data recordings --suites A --until 0.2 \\
     --update robot_parameters_schunk.yaml --out shield
+  reachtube export --robot arm.toml --to armour --capsules capsules.toml --uncertainty 0.03 \\
+    --torque-limits 56,56,29 --out armour
 
 Each suite, or run with a nominal motion of its own, gets a folder, which also holds our bounds
 (bounds.csv at samples, tube.csv between them) and the input (inputs.csv). docs/export.md says how
@@ -51,6 +56,7 @@ const TARGETS: Choices = &[
     ("mjcf", "MuJoCo, the robot"),
     ("urdf", "the robot"),
     ("sara-shield", "SaRA shield, YAML files of the robot and its limits"),
+    ("armour", "ARMOUR, the header of the robot"),
 ];
 
 const FORMS: Choices = &[
@@ -66,7 +72,8 @@ pub(crate) struct Arguments {
     /// Model file that `conform --out` wrote
     #[arg(long, value_name = "FILE", required_unless_present = "robot")]
     pub model: Option<PathBuf>,
-    /// Robot in place of a model, for mjcf and urdf: the embedded lwa4p, or a TOML or URDF file
+    /// Robot in place of a model, for mjcf, urdf and armour: the embedded lwa4p, or a TOML or URDF
+    /// file
     #[arg(long, value_name = "ROBOT", conflicts_with = "model")]
     pub robot: Option<String>,
     #[command(flatten)]
@@ -76,10 +83,19 @@ pub(crate) struct Arguments {
     /// both, one --update for each. All other text stays as it is
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub update: Vec<PathBuf>,
-    /// With --to sara-shield: the links' capsules, a TOML or URDF file [default: the
+    /// With --to sara-shield and armour: the links' capsules, a TOML or URDF file [default: the
     /// capsules of the embedded robot]
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub capsules: Option<PathBuf>,
+    /// With --to armour: ratio from 0 to below 1 by which masses and inertias may differ from the
+    /// robot's, which no recording proves
+    #[arg(long, value_name = "RATIO", required_if_eq("to", "armour"), hide_short_help = true)]
+    #[arg(allow_negative_numbers = true)]
+    pub uncertainty: Option<f64>,
+    /// With --to armour: largest torque of each joint, N m
+    #[arg(long, value_name = "T1,..", value_delimiter = ',', required_if_eq("to", "armour"))]
+    #[arg(hide_short_help = true, allow_negative_numbers = true)]
+    pub torque_limits: Vec<f64>,
     /// What to write
     #[arg(long, value_name = "TOOL", value_parser = choice::<Target>(TARGETS))]
     pub to: Target,
@@ -120,6 +136,8 @@ pub(crate) enum Target {
     /// The files of the shield SaRA.
     #[serde(rename = "sara-shield")]
     SaraShield,
+    /// The header of the planner ARMOUR.
+    Armour,
     /// A model for a tool.
     #[serde(untagged)]
     Tool(Tool),
@@ -140,6 +158,15 @@ pub(super) fn write_all<'a>(
         write::atomically(path, |out| out.write_all(file.text.as_bytes()))?;
     }
     Ok(())
+}
+
+/// Loads the robot that is named, or the robot of the model.
+pub(super) fn load_robot(args: &Arguments) -> Result<Robot> {
+    match (&args.robot, &args.model) {
+        (Some(robot), _) => args.lock.load(robot),
+        (None, Some(model)) => Ok(Model::open(model)?.1.robot().clone()),
+        (None, None) => Err(Error::NoModel),
+    }
 }
 
 /// Opens the model over the recordings; `tool` names what it is for.

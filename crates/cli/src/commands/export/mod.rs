@@ -1,18 +1,18 @@
 //! `reachtube export`: models and robots as other tools read them.
 
 mod arguments;
+mod armour;
 mod shield;
 
 use std::path::{Path, PathBuf};
 
-use reachtube::conform::Model;
 use reachtube::export::robot::{mjcf_files, updated_urdf_files, urdf_files};
 use reachtube::export::{ExportCase, ExportError, ExportFile, InputForm, Meaning, Tool, files};
 use reachtube::{Robot, write};
 use serde_json::{Value, json};
 
 pub(crate) use arguments::Arguments;
-use arguments::{Target, open, write_all};
+use arguments::{Target, load_robot, open, write_all};
 
 use crate::error::{Error, Result};
 use crate::file_names;
@@ -46,6 +46,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         Target::Mjcf => robot(args, &mjcf_files, json),
         Target::Urdf => robot(args, &updated, json),
         Target::SaraShield => shield::run(args, json),
+        Target::Armour => armour::run(args, json),
         Target::Tool(tool) => model(args, tool, json),
     }
 }
@@ -57,11 +58,7 @@ fn robot(
     json: bool,
 ) -> Result<Outcome> {
     write::try_at(&args.out.join("robot.xml"))?;
-    let robot = match (&args.robot, &args.model) {
-        (Some(robot), _) => args.lock.load(robot)?,
-        (None, Some(model)) => Model::open(model)?.1.robot().clone(),
-        (None, None) => return Err(Error::NoModel),
-    };
+    let robot = load_robot(args)?;
     let files = files(&robot)?;
     let paths: Vec<PathBuf> = files.iter().map(|file| args.out.join(&file.name)).collect();
     write_all(&paths, files.iter())?;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use reachtube::Robot;
 use reachtube::export::shield::{LinkMargin, Shield, ShieldFile};
 use reachtube::number::at_least;
+use reachtube::verify::Capsules;
 use reachtube::write;
 use serde_json::{Value, json};
 
 use super::arguments::{Arguments, open, write_all};
-use crate::commands::verify::capsules;
 use crate::error::Result;
 use crate::outcome::Outcome;
 use crate::output;
@@ -21,7 +21,7 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let updates = args.update.iter().map(|path| read(path)).collect::<Result<Vec<_>>>()?;
     let opened = open(args, "the SaRA shield")?;
     let robot = Robot::from_description(&opened.model.robot)?;
-    let named = capsules(args.capsules.as_deref(), &robot);
+    let named = Capsules::open(args.capsules.as_deref(), &robot);
     let capsules = match (&args.capsules, updates.is_empty()) {
         // The shield's own file may have the capsules.
         (None, false) => named.ok(),

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-use reachtube::conform::data::Side;
+use reachtube::conform::Finding;
 use reachtube::conform::monitor::{Leave, Monitor};
-use reachtube::recordings::{State, StateKind};
-use reachtube::robot::Robot;
+use reachtube::recordings::State;
+use reachtube::robot::{JointKind, Robot};
 use serde_json::{Value, json};
 
 use crate::error::Result;
@@ -16,19 +16,15 @@ use crate::table::table;
 pub(super) struct Events {
     json: bool,
     names: Vec<String>,
-    /// The units of each state.
-    units: Vec<&'static str>,
+    kinds: Vec<JointKind>,
     /// The first event.
-    first: Option<String>,
+    first: Option<Finding>,
 }
 
 impl Events {
     pub(super) fn new(robot: &Robot, json: bool) -> Self {
-        let joints = robot.joints();
-        let units = [StateKind::Position, StateKind::Velocity];
-        let units = units.iter().flat_map(|kind| joints.iter().map(|joint| kind.unit(joint.kind)));
-        let names = joints.iter().map(|joint| joint.name.clone()).collect();
-        Self { json, names, units: units.collect(), first: None }
+        let names = robot.joints().iter().map(|joint| joint.name.clone()).collect();
+        Self { json, names, kinds: robot.kinds(), first: None }
     }
 
     /// Prints a line for each window that is left for the first time, with its worst state.
@@ -43,26 +39,19 @@ impl Events {
     }
 
     fn print(&mut self, leave: &Leave) -> Result<()> {
-        let n = self.names.len();
-        let (name, unit) = (&self.names[leave.joint - 1], self.units[leave.state.index(n)]);
-        let side = match leave.side {
-            Side::Upper => "above",
-            Side::Lower => "below",
-        };
-        let rounding = if leave.proved { "" } else { ", within rounding" };
-        let text = format!(
-            "{:.4} s: {name} left its set: {} is {:.2e} {unit} {side} it{rounding}, in the window \
-             from {:.4} s",
-            leave.time, leave.state, leave.excess, leave.window
-        );
-        self.first.get_or_insert_with(|| text.clone());
+        let name = &self.names[leave.joint - 1];
+        let finding = leave.finding(name, self.kinds[leave.joint - 1]);
+        let text = format!("{}\n", finding.text);
+        let code = finding.code;
+        self.first.get_or_insert(finding);
         if self.json {
             let mut event = serde_json::to_value(leave).expect("an event has string keys");
             event["event"] = "left".into();
             event["name"] = name.clone().into();
+            event["code"] = code.name().into();
             return line(&event);
         }
-        output::print(&format!("{text}\n"))
+        output::print(&text)
     }
 
     /// Prints how much of the sets is used at a time, s.
@@ -90,26 +79,22 @@ impl Events {
     /// Prints the summary.
     pub(super) fn summary(&self, monitor: &Monitor, ended: &str) -> Result<()> {
         let totals = monitor.totals();
+        let verdict = totals.finding();
         if self.json {
+            let findings: Vec<&Finding> = [&verdict].into_iter().chain(&self.first).collect();
             return line(&json!({
                 "event": "summary",
                 "ended": ended,
                 "totals": totals,
                 "largest_used": monitor.largest_used(),
                 "drift": monitor.drift(),
+                "findings": findings,
             }));
         }
-        let mut text = match &self.first {
-            None => format!(
-                "never left: {} samples stayed in the sets of all windows, of which {} ended\n",
-                totals.samples, totals.windows
-            ),
-            Some(first) => format!(
-                "left: {} windows left their sets, {} ended; {} of {} rows are outside\nfirst: \
-                 {first}\n",
-                totals.left, totals.windows, totals.outside, totals.rows
-            ),
-        };
+        let mut text = format!("{}\n", verdict.text);
+        if let Some(first) = &self.first {
+            let _ = writeln!(text, "first: {}", first.text);
+        }
         let n = self.names.len();
         let percent = |part: f64| format!("{:.0}", 100.0 * part);
         let row = |joint: usize| {

@@ -10,7 +10,7 @@ use reachtube::reach::Disturbance;
 use reachtube::reproduce::{Table2, Table2Options, table2};
 
 use crate::error::Result;
-use crate::option_values::{DISTURBANCES, INITIAL_LIMITS, NOTIONS, choice, trimmed};
+use crate::option_values::{DISTURBANCES, INITIAL_LIMITS, choice, trimmed};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
         value_name = "NOTION,..",
         value_delimiter = ',',
         default_value = "hull",
-        value_parser = choice::<Notion>(&NOTIONS[..3])
+        value_parser = choice::<Notion>(&Notion::NAMES[..3])
     )]
     pub notions: Vec<Notion>,
     /// How the disturbance may change in time [default: constant for the hull, as in the paper;

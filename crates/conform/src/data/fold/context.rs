@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 
 use crate::advice::Advice;
 use crate::data::input::RunInput;
-use crate::data::settings::{NominalStart, Notion, Settings};
+use crate::data::settings::{NominalStart, Settings};
 use crate::data::setup::{Setup, read_options, side};
 use crate::error::{Error, Result};
 
@@ -34,7 +34,8 @@ impl Context {
         let Setup { robot, settings, correction, .. } = setup;
         settings.validate(robot.joint_count())?;
         let is_linear = setup.dynamics.linear_system().is_some();
-        if settings.notion == Notion::Trace || settings.notion != Notion::Hull && !is_linear {
+        let Settings { notion, .. } = settings;
+        if notion.asks_motions() || notion.asks_points() && !is_linear {
             let problem = "the notion trace, and for models that are not linear every notion but \
                            the hull, need whole recordings: use the notion hull, or read the \
                            recordings on one machine";

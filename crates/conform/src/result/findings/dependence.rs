@@ -42,7 +42,7 @@ impl Finding {
         let finding = Self::new(Severity::Info, Code::LeftOut, text).with("motions", motions);
         Some(match furthest(&model.left_out) {
             None => finding,
-            Some(LeftOut { motion, gauge, .. }) => {
+            Some(left @ LeftOut { motion, gauge, .. }) => {
                 let growth = match gauge {
                     Some(gauge) => {
                         format!("would have to grow {} times to enclose it", at_least(*gauge))
@@ -50,10 +50,17 @@ impl Finding {
                     None => "enclose it under no growth that was found".into(),
                 };
                 let more = format!(
-                    " Without motion {motion} they {growth}, and another motion may lie as far out."
+                    " Without motion {motion} they {growth}, and another motion may lie as far \
+                     out.{}",
+                    in_turn(left)
                 );
                 let text = finding.text.clone() + &more;
-                Self { text, ..finding }.at(motion).with("growth", gauge.unwrap_or(f64::INFINITY))
+                let number = |gauge: &Option<f64>| gauge.unwrap_or(f64::INFINITY);
+                Self { text, ..finding }
+                    .at(motion)
+                    .with("growth", number(gauge))
+                    .with("initial_growth", number(&left.initial_gauge))
+                    .with("input_growth", number(&left.input_gauge))
             }
         })
     }
@@ -103,6 +110,19 @@ impl Finding {
         let finding = Self::new(Severity::Warning, Code::RobotChanged, text).at(place);
         (!suites.is_empty()).then(|| finding.with("joints", trends.len() as f64))
     }
+}
+
+/// Returns which of X0 and U has to grow for a motion, in words; no words if it is not known.
+fn in_turn(left: &LeftOut) -> String {
+    let Some(initial) = left.initial_gauge else { return String::new() };
+    let input = match left.input_gauge {
+        Some(input) => format!("U {} times", at_least(input)),
+        None => "no U that was found".into(),
+    };
+    format!(
+        " Grown one after the other, its start needs X0 {} times, and the rest then needs {input}.",
+        at_least(initial)
+    )
 }
 
 /// Returns the motion whose absence needs the most growth, if one needs any.

@@ -1,7 +1,8 @@
 //! What an answer does not say: how far a proof reaches, and what must not be concluded.
 
 use crate::claim::verdict::Verdict;
-use crate::data::settings::{Notion, States};
+use crate::data::notion::Notion;
+use crate::data::settings::States;
 use crate::next_motion::trust::Trust;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
@@ -31,13 +32,13 @@ impl Finding {
         let samples = "The recordings are compared with the set at samples. Between samples only \
                        the model's own states are enclosed, in the tube that `reachtube reach` \
                        writes.";
-        let notion = verdict.points.as_ref().map_or(Notion::Hull, |points| points.notion);
+        let notion = verdict.points.as_ref().map_or_else(Notion::default, |points| points.notion);
         let outer = "The model is not linear: its reachable set was computed as an outer \
                      enclosure, which is what a formal analysis uses. A recording in it need not \
                      be a behaviour of the model itself. The recordings that decide the sets touch \
                      the linearised set, not the wider outer set.";
         let mut all = vec![rows, info(Code::AtSamples, samples.into())];
-        all.push(info(Code::Notion, notion_reach(notion).into()));
+        all.push(info(Code::Notion, notion.limit_words().into()));
         if *enclosure == Enclosure::Outer {
             all.push(info(Code::OuterSet, outer.into()));
         }
@@ -55,27 +56,5 @@ impl Finding {
             all.push(Self::new(Severity::Info, Code::FewMotions, few));
         }
         all
-    }
-}
-
-fn notion_reach(notion: Notion) -> &'static str {
-    match notion {
-        Notion::Hull => {
-            "The notion is the hull, which bounds each state separately. A point inside the hull \
-             need not be reachable."
-        }
-        Notion::PhasePlane => {
-            "The notion is the phase plane, which takes position and velocity of each joint \
-             together, and each joint by itself. States of several joints need not be reachable \
-             together."
-        }
-        Notion::Exact => {
-            "The notion is exact: all states at one sample are reachable together. One motion of \
-             the model need not pass through the states of all samples."
-        }
-        Notion::Trace => {
-            "The notion is trace: up to V, one motion of the model passes through the states of \
-             all samples. V is the error that the recordings were allowed."
-        }
     }
 }

@@ -2,7 +2,6 @@
 
 use reachtube_scalar::number::{at_least, counted, plural};
 
-use crate::data::settings::Notion;
 use crate::model::file::Model;
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::rates::{FEWEST_MOTIONS, Rate, Rates};
@@ -44,7 +43,7 @@ impl Finding {
     /// The bound for the next motion of a model that was fitted.
     pub(crate) fn next_motion_of_fit(model: &Model) -> Self {
         let Model { trust, proof, calibration, settings, data, .. } = model;
-        let can_calibrate = calibration.is_none() && settings.notion == Notion::Hull;
+        let can_calibrate = calibration.is_none() && !settings.notion.asks_points();
         let could_say_more = can_calibrate && trust.violation_probability > LITTLE;
         let remedy =
             (could_say_more && data.motions() > 1).then(|| Remedy::new("calibrate", "MOTION,.."));

@@ -6,12 +6,12 @@ use reachtube_scalar::number::{at_least, counted, four_decimals, plural};
 
 use crate::claim::verdict::Verdict;
 use crate::claim::witness::{PointVerdict, PointWitness};
-use crate::data::settings::{Notion, Settings};
+use crate::data::notion::Notion;
+use crate::data::settings::Settings;
 use crate::explain::trace::TraceVerdict;
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
-use crate::result::findings::words::notion_words;
 use crate::result::remedy::Remedy;
 use crate::search::found::SearchSummary;
 use crate::tube::strand::Lost;
@@ -140,7 +140,7 @@ impl Finding {
         let text = format!(
             "{} of {points} recorded points ({}) proved to lie in the {set}{rest}",
             points - unproved,
-            notion_words(*notion),
+            notion.states_together(),
         );
         Self::new(severity, Code::Points, text)
             .with("points", *points as f64)
@@ -282,12 +282,11 @@ impl Finding {
 
     /// That the sets are not the smallest.
     pub(crate) fn not_smallest(notion: Notion, gap: f64) -> Self {
-        let why = match notion {
-            Notion::Trace => {
-                "all of U was widened by one factor until motions of the model passed through the \
-                 recordings"
-            }
-            _ => "the solver stopped above its lower bound",
+        let why = if notion.asks_motions() {
+            "all of U was widened by one factor until motions of the model passed through the \
+             recordings"
+        } else {
+            "the solver stopped above its lower bound"
         };
         let text = format!(
             "The sets enclose the recordings but are not the smallest: {why} (relative gap \

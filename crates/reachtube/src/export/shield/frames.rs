@@ -1,4 +1,5 @@
-//! Frames and capsules as the shield's file has them: each frame turns about its z axis.
+//! Frames and capsules as the files of the shield and of ARMOUR have them: each frame turns about
+//! its z axis.
 
 use std::fmt::Write;
 
@@ -7,26 +8,38 @@ use reachtube_robot::{JointKind, Placement, Robot};
 use reachtube_verify::{Capsule, Capsules};
 
 use crate::export::ExportError;
-use crate::export::robot::bodies;
+use crate::export::robot::{Body, bodies};
 use crate::export::text::{harmless, number, numbers};
 
 /// What a capsule around several others grows by \[m\], for rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// The links of a robot in the shield's frames.
-pub(super) struct Frames {
-    /// The turn from the shield's frame to the joint's: its z is the axis.
+/// The links of a robot in frames that turn about z.
+pub(in crate::export) struct Frames {
+    /// The turn from each frame to the joint's: its z is the axis.
     turns: Vec<Matrix3<f64>>,
     /// Each frame in the one before, at q = 0.
-    placements: Vec<Placement>,
+    pub placements: Vec<Placement>,
     /// One capsule per link, in its frame.
-    capsules: Vec<Capsule>,
+    pub capsules: Vec<Capsule>,
+}
+
+/// A link in such a frame.
+pub(in crate::export) struct FramedBody {
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// Centre of mass \[m\].
+    pub com: [f64; 3],
+    /// Inertia about the centre of mass \[kg m²\].
+    pub inertia: Matrix3<f64>,
+    /// Motor inertia on the link side \[kg m²\].
+    pub armature: f64,
 }
 
 impl Frames {
     /// Takes the frames of a robot whose joints all turn, and one capsule per link.
-    pub(super) fn new(robot: &Robot, capsules: &Capsules) -> Result<Self, ExportError> {
-        let refused = |joint: usize, problem: &str, remedy: &str| ExportError::Shield {
+    pub(in crate::export) fn new(robot: &Robot, capsules: &Capsules) -> Result<Self, ExportError> {
+        let refused = |joint: usize, problem: &str, remedy: &str| ExportError::Refused {
             place: format!("{}: joint {}", robot.name(), robot.joints()[joint].name),
             problem: problem.into(),
             remedy: remedy.into(),
@@ -37,7 +50,7 @@ impl Frames {
         let mut before = Placement::identity();
         for (j, joint) in geometry.iter().enumerate() {
             if robot.joints()[j].kind == JointKind::Prismatic {
-                return Err(refused(j, "it slides, and the shield's joints all turn", "lock it"));
+                return Err(refused(j, "it slides, and the tool's joints all turn", "lock it"));
             }
             let back = match j {
                 0 => Matrix3::identity(),
@@ -49,7 +62,7 @@ impl Frames {
             let of_link: Vec<Capsule> =
                 capsules.as_slice().iter().filter(|capsule| capsule.joint == j).copied().collect();
             let capsule = enclosing(&of_link).ok_or_else(|| {
-                refused(j, "its link has no capsule, and the shield asks for one", "add one")
+                refused(j, "its link has no capsule, and the tool asks for one", "add one")
             })?;
             frames.capsules.push(frames.moved(j, &capsule, &joint.after));
         }
@@ -62,6 +75,22 @@ impl Frames {
         let place =
             |p: [f64; 3]| (back * (after.rotation * Vector3::from(p) + after.translation)).into();
         Capsule { from: place(capsule.from), to: place(capsule.to), ..*capsule }
+    }
+
+    /// Returns the links as bodies with the robot's torques.
+    ///
+    /// # Errors
+    ///
+    /// As [`bodies`].
+    pub(in crate::export) fn bodies(&self, robot: &Robot) -> Result<Vec<FramedBody>, ExportError> {
+        let framed = |(body, turn): (&Body, &Matrix3<f64>)| {
+            let (mass, com, [xx, xy, xz, yy, yz, zz]) = body.inertia.about_own_com();
+            let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+            let com = (turn.transpose() * Vector3::from(com)).into();
+            let inertia = turn.transpose() * tensor * turn;
+            FramedBody { mass, com, inertia, armature: body.armature }
+        };
+        Ok(bodies(robot)?.iter().zip(&self.turns).map(framed).collect())
     }
 
     /// Returns the file, without its first comment.
@@ -84,7 +113,7 @@ impl Frames {
             [clean(capsule.from), clean(capsule.to), number(capsule.radius)].join(",\n  ")
         });
         list(&mut text, "enclosures", capsules);
-        let bodies = bodies(robot).map_err(|_| ExportError::Shield {
+        let own = self.bodies(robot).map_err(|_| ExportError::Refused {
             place: robot.name().into(),
             problem:
                 "the shield asks for masses of the links, and these have none that simulators \
@@ -94,22 +123,16 @@ impl Frames {
                      physical links (model.physical = true in the settings of identify)"
                 .into(),
         })?;
-        let own = bodies.iter().zip(&self.turns).map(|(body, turn)| {
-            let (mass, com, [xx, xy, xz, yy, yz, zz]) = body.inertia.about_own_com();
-            let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-            let com: [f64; 3] = (turn.transpose() * Vector3::from(com)).into();
-            (mass, com, turn.transpose() * tensor * turn)
-        });
-        let own: Vec<_> = own.collect();
         text += "# kg\n";
-        list(&mut text, "link_masses", own.iter().map(|(mass, ..)| number(*mass)));
+        list(&mut text, "link_masses", own.iter().map(|body| number(body.mass)));
         text += "# About the centre of mass, kg m^2: ixx, ixy, ixz, iyy, iyz, izz\n";
-        let inertias = own.iter().map(|(.., i)| {
+        let inertias = own.iter().map(|FramedBody { inertia: i, .. }| {
             clean([i[(0, 0)], i[(0, 1)], i[(0, 2)], i[(1, 1)], i[(1, 2)], i[(2, 2)]])
         });
         list(&mut text, "link_inertias", inertias);
         text += "# m and rad: x, y, z, roll, pitch, yaw\n";
-        let centres = own.iter().map(|(_, c, _)| clean([c[0], c[1], c[2], 0.0, 0.0, 0.0]));
+        let centres =
+            own.iter().map(|FramedBody { com: [x, y, z], .. }| clean([*x, *y, *z, 0.0, 0.0, 0.0]));
         list(&mut text, "link_centers_of_mass", centres);
         Ok(text)
     }

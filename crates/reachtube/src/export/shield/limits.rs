@@ -48,11 +48,11 @@ impl Covered {
     ///
     /// # Errors
     ///
-    /// [`ExportError::Shield`] for a file without the limits, and for a joint that rests.
+    /// [`ExportError::Refused`] for a file without the limits, and for a joint that rests.
     pub(super) fn file(&self, robot: &Robot, file: &ShieldFile) -> Result<ExportFile, ExportError> {
         for (j, joint) in robot.joints().iter().enumerate() {
             if self.velocity[j] < REST || self.acceleration[j] < REST {
-                return Err(ExportError::Shield {
+                return Err(ExportError::Refused {
                     place: format!("{}: joint {}", file.name, joint.name),
                     problem: "it rests in these recordings, so no limit of its motion is covered"
                         .into(),

@@ -36,7 +36,7 @@ impl LinkFile {
     ///
     /// # Errors
     ///
-    /// [`ExportError::Shield`] for what cannot be read, and for another arm than `robot`.
+    /// [`ExportError::Refused`] for what cannot be read, and for another arm than `robot`.
     pub(super) fn read(file: &ShieldFile, robot: &Robot) -> Result<Self, ExportError> {
         let (yaml, n) = (Yaml::new(file), robot.joint_count());
         let matrices = yaml.numbers("transformation_matrices", 16 * n)?;
@@ -83,7 +83,7 @@ impl LinkFile {
 }
 
 fn refused(file: &ShieldFile, joint: &str, problem: &str) -> ExportError {
-    ExportError::Shield {
+    ExportError::Refused {
         place: format!("{}: joint {joint}", file.name),
         problem: problem.into(),
         remedy: "name the file that belongs to this robot".into(),

@@ -4,7 +4,7 @@
 //! robot. [`Shield::new`] proves that number from reachable sets.
 
 mod file;
-mod frames;
+pub(super) mod frames;
 mod limits;
 mod link_file;
 mod yaml;
@@ -80,7 +80,7 @@ impl Shield {
     ///
     /// # Errors
     ///
-    /// [`ExportError::Shield`] for a robot or a file that the shield cannot have, and for links
+    /// [`ExportError::Refused`] for a robot or a file that the shield cannot have, and for links
     /// without masses where the robot's file is written whole; [`ExportError::EndsEarly`] for a
     /// reachable set that ends before the motion.
     ///
@@ -119,7 +119,7 @@ impl<'a> Links<'a> {
         match (updates.iter().find(|file| is_of_links(file)), capsules) {
             (Some(file), _) => Ok(Self::File(file, Box::new(LinkFile::read(file, robot)?))),
             (None, Some(capsules)) => Ok(Self::Own(robot, capsules)),
-            (None, None) => Err(ExportError::Shield {
+            (None, None) => Err(ExportError::Refused {
                 place: robot.name().into(),
                 problem: "no capsules are known for its links".into(),
                 remedy: "name a file with capsules, or the shield's own robot file".into(),

@@ -57,7 +57,7 @@ impl<'a> Yaml<'a> {
     /// Returns an error about a key; `at` is a place in the text.
     pub(super) fn error(&self, at: usize, key: &str, problem: String) -> ExportError {
         let line = self.file.text[..at].matches('\n').count() + 1;
-        ExportError::Shield {
+        ExportError::Refused {
             place: format!("{}:{line}: {key}", self.file.name),
             problem,
             remedy: "correct it, or name the file that belongs to this robot".into(),

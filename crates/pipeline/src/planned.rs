@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use reachtube::recordings::{Defect, ReadOptions, Run, RunEntry, RunSource, read_csv};
+use reachtube_recordings::{Defect, ReadOptions, Run, RunEntry, RunSource, read_csv};
 
 /// A motion in one CSV file with the columns of a recording: a planned one has the planned states
 /// and the feed-forward torque. Its suite has the name of the file.

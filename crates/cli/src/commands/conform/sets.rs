@@ -1,0 +1,220 @@
+//! The options that decide which sets `conform` finds.
+
+use clap::Args;
+use reachtube::conform::settings::{
+    Centre, Equations, InitialLimit, Method, NominalStart, States, Tolerance, Weights,
+};
+use reachtube::conform::{Noise, Notion, Settings};
+use reachtube_reach::Disturbance;
+
+use crate::error::{Error, Result};
+use crate::option_values::{Choices, DISTURBANCES, INITIAL_LIMITS, choice};
+
+/// The options that decide which sets are found.
+#[derive(Debug, Args)]
+pub(crate) struct SetArguments {
+    /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable
+    /// disturbances in any case
+    #[arg(
+        long, hide_short_help = true,
+        help_heading = "Sets",
+        default_value = "sample",
+        value_parser = choice::<Disturbance>(DISTURBANCES)
+    )]
+    pub disturbance: Disturbance,
+    /// Centres of the sets X0 and U
+    #[arg(
+        long, hide_short_help = true,
+        help_heading = "Sets",
+        default_value = "free",
+        value_parser = choice::<Centre>(CENTRES)
+    )]
+    pub centre: Centre,
+    /// Directions in which recordings must lie in the reachable set
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "hull",
+        value_parser = choice::<Notion>(Notion::NAMES)
+    )]
+    pub notion: Notion,
+    /// States that the reachable set must enclose
+    #[arg(
+        long, hide_short_help = true,
+        help_heading = "Sets",
+        default_value = "all",
+        value_parser = choice::<States>(STATES)
+    )]
+    pub states: States,
+    /// How far X0 may reach. Where nothing limits it, X0 may take over what U would cover later
+    #[arg(
+        long, hide_short_help = true,
+        help_heading = "Sets",
+        default_value = "none",
+        value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
+    )]
+    pub initial_limit: InitialLimit,
+    /// Weights of the states in the cost: unit (1 for each state); spread (1 over the state's
+    /// largest deviation in the recordings); or 2 or 2n numbers between 1e-9 and 1e9, positions
+    /// first
+    #[arg(
+        long,
+        hide_short_help = true,
+        help_heading = "Sets",
+        default_value = "unit",
+        value_name = "unit|spread|W,W,..",
+        allow_hyphen_values = true
+    )]
+    pub weights: String,
+    /// Measurement noise V: none, fitted, or its radii in rad and rad/s.
+    ///
+    /// Fitted radii are found with the sets and are at most the sensor noise's. Given radii are 2
+    /// or 2n numbers between 0 and 1e9: positions in rad, then velocities in rad/s.
+    #[arg(
+        long,
+        help_heading = "Sets",
+        default_value = "none",
+        value_name = "none|fitted|R,R,..",
+        allow_hyphen_values = true
+    )]
+    pub noise: String,
+    /// Radii of the sensors' noise, 2 or 2n numbers between 0 and 1e9: positions in rad, then
+    /// velocities in rad/s. They limit V of --noise fitted and X0 of --nominal own [default:
+    /// estimated from the recordings]
+    #[arg(
+        long,
+        hide_short_help = true,
+        help_heading = "Sets",
+        value_name = "R,R,..",
+        allow_hyphen_values = true
+    )]
+    pub sensor_noise: Option<String>,
+    /// First state of the nominal motions
+    #[arg(
+        long, hide_short_help = true,
+        help_heading = "Sets",
+        default_value = "mean",
+        value_parser = choice::<NominalStart>(NOMINAL_STARTS)
+    )]
+    pub nominal: NominalStart,
+    /// Equations of motion that nominal motions satisfy.
+    ///
+    /// With the robot's equations U covers only what the robot itself does not explain; this needs
+    /// a linear model.
+    #[arg(
+        long,
+        help_heading = "Model",
+        default_value = "model",
+        value_parser = choice::<Equations>(EQUATIONS)
+    )]
+    pub equations: Equations,
+    /// Motions that are held out from the fit, separated by commas; * and ? match as in M*.
+    ///
+    /// Their names are in runs.csv. The sets found on the other motions are scaled until they
+    /// enclose these too, which bounds the probability that the next motion leaves them.
+    #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
+    pub calibrate: Vec<String>,
+    /// Method that finds the sets
+    #[arg(
+        long, hide_short_help = true,
+        help_heading = "Method",
+        default_value = "program",
+        value_parser = choice::<Method>(METHODS)
+    )]
+    pub method: Method,
+    /// Search for a motion of the model itself near each recording, within these tolerances in rad
+    /// and rad/s: 2 numbers, 0 or more, or none [default: none for a linear model, otherwise
+    /// 0.001,0.01 for the recordings that decide the sets]
+    #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "none|Q,QD")]
+    pub explain: Option<String>,
+}
+
+const CENTRES: Choices = &[
+    ("free", "any centre"),
+    ("origin", "any centre for which the set contains 0, as in the paper"),
+    ("zero", "the centre is 0"),
+];
+
+const STATES: Choices = &[("all", "positions and velocities"), ("positions", "positions only")];
+
+const NOMINAL_STARTS: Choices = &[
+    ("mean", "the mean of the first states of the suite's runs"),
+    ("own", "each run's own first state"),
+];
+
+const EQUATIONS: Choices = &[
+    ("model", "the model's"),
+    ("robot", "the robot's own; the model describes the deviations from them"),
+];
+
+const METHODS: Choices = &[
+    ("program", "linear programs: one for a linear model, a sequence of them otherwise"),
+    ("bisection", "bisection of one radius after the other, the paper's baseline"),
+];
+
+impl SetArguments {
+    /// Returns the tolerance of `--explain`, where it is given.
+    pub(super) fn explain(&self) -> Result<Option<Option<Tolerance>>> {
+        Ok(match self.explain.as_deref() {
+            Some("none") => Some(None),
+            Some(list) => {
+                let wrong = || Error::ExplainTolerance { given: list.into() };
+                let (position, velocity) = list.split_once(',').ok_or_else(wrong)?;
+                let parse = |text: &str| text.trim().parse().map_err(|_| wrong());
+                Some(Some(Tolerance { position: parse(position)?, velocity: parse(velocity)? }))
+            }
+            None => None,
+        })
+    }
+
+    /// Returns the usual settings of a robot of `joints` joints with these options.
+    pub(super) fn settings(&self, usual: Settings, joints: usize) -> Result<Settings> {
+        Ok(Settings {
+            method: self.method,
+            disturbance: self.disturbance,
+            centre: self.centre,
+            notion: self.notion,
+            states: self.states,
+            initial_limit: self.initial_limit,
+            weights: match self.weights.as_str() {
+                "unit" => Weights::Unit,
+                "spread" => Weights::Spread,
+                list => Weights::Given(numbers("--weights", "unit, spread, ", list, joints)?),
+            },
+            noise: match self.noise.as_str() {
+                "none" => Noise::None,
+                "fitted" => Noise::Fitted,
+                list => Noise::Fixed(numbers("--noise", "none, fitted, ", list, joints)?),
+            },
+            sensor_noise: match &self.sensor_noise {
+                Some(list) => Some(numbers("--sensor-noise", "", list, joints)?),
+                None => None,
+            },
+            nominal: self.nominal,
+            equations: self.equations,
+            calibrate: self.calibrate.clone(),
+            ..usual
+        })
+    }
+}
+
+/// Parses one number per state: 2n numbers, or 2 that stand for all positions and all velocities.
+/// `words` names the other values of the option, for the error.
+fn numbers(
+    option: &'static str,
+    words: &'static str,
+    list: &str,
+    joints: usize,
+) -> Result<Vec<f64>> {
+    let states = 2 * joints;
+    let wrong = |problem: String| Error::StateValues { option, problem, words, states };
+    let parse = |text: &str| {
+        text.trim().parse::<f64>().map_err(|_| wrong(format!("\"{text}\" is not a number")))
+    };
+    let values = list.split(',').map(parse).collect::<Result<Vec<_>>>()?;
+    match values[..] {
+        [position, velocity] => Ok([vec![position; joints], vec![velocity; joints]].concat()),
+        _ if values.len() == states => Ok(values),
+        _ => Err(wrong(format!("{} values given", values.len()))),
+    }
+}

@@ -1,0 +1,107 @@
+//! The notions of enclosure: their names, their words, and the states that are judged together.
+//! `claim/` proves them.
+
+use serde::{Deserialize, Serialize};
+
+/// In which directions recordings must lie in the reachable set (docs/method.md, correction C).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Notion {
+    /// Each state by itself: in the interval hull of the set, the paper's notion.
+    #[default]
+    Hull,
+    /// Position and velocity of each joint together: in the set's projection on its phase plane.
+    PhasePlane,
+    /// All states together: in the set itself.
+    Exact,
+    /// All states together, and one motion of the model passes through all samples of a recording,
+    /// up to the noise set V.
+    Trace,
+}
+
+impl Notion {
+    /// The name of each notion, as in files and options, and its meaning.
+    pub const NAMES: &[(&str, &str)] = &[
+        ("hull", "each state by itself: in the interval hull of the set"),
+        ("phase-plane", "position and velocity of each joint together: in the set's projections"),
+        ("exact", "all states together: in the set itself"),
+        ("trace", "exact, and one motion of the model through all samples, up to the noise V"),
+    ];
+
+    /// Returns whether recorded points are judged, and not only each state by itself.
+    #[must_use]
+    pub(crate) fn asks_points(self) -> bool {
+        self != Self::Hull
+    }
+
+    /// Returns whether one motion of the model must pass through all samples of a recording.
+    #[must_use]
+    pub(crate) fn asks_motions(self) -> bool {
+        self == Self::Trace
+    }
+
+    /// Returns the states of each projection in which recorded points must lie in the reachable
+    /// set, for recordings of `rows` states: positions, or also velocities.
+    pub(crate) fn projections(self, rows: usize, joints: usize) -> Vec<Vec<usize>> {
+        match self {
+            Self::Exact | Self::Trace => vec![(0..rows).collect()],
+            _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
+            _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
+        }
+    }
+
+    /// Returns which states must lie in the reachable set together.
+    #[must_use]
+    pub fn states_together(self) -> &'static str {
+        match self {
+            Self::Hull => "each state by itself",
+            Self::PhasePlane => "position and velocity of each joint together",
+            Self::Exact | Self::Trace => "all states together",
+        }
+    }
+
+    /// Returns what is claimed of the recorded `states`, such as "position", in a model's `set`.
+    pub(crate) fn claim_words(self, states: &str, set: &str) -> String {
+        match self {
+            Self::Hull => format!(
+                "the recorded {states} of every joint lies in the interval hull of the model's \
+                 {set}"
+            ),
+            Self::PhasePlane => format!(
+                "the recorded {states} of every joint together lie in the projection of the \
+                 model's {set} on the joint's phase plane"
+            ),
+            Self::Exact => {
+                format!("the recorded {states} of all joints together lie in the model's {set}")
+            }
+            Self::Trace => format!(
+                "{}, and one motion of the model, with its start in X0 and its input in U, passes \
+                 through all samples within V",
+                Self::Exact.claim_words(states, set)
+            ),
+        }
+    }
+
+    /// Returns the notion and what it leaves open.
+    pub(crate) fn limit_words(self) -> &'static str {
+        match self {
+            Self::Hull => {
+                "The notion is the hull, which bounds each state separately. A point inside the \
+                 hull need not be reachable."
+            }
+            Self::PhasePlane => {
+                "The notion is the phase plane, which takes position and velocity of each joint \
+                 together, and each joint by itself. States of several joints need not be \
+                 reachable together."
+            }
+            Self::Exact => {
+                "The notion is exact: all states at one sample are reachable together. One motion \
+                 of the model need not pass through the states of all samples."
+            }
+            Self::Trace => {
+                "The notion is trace: up to V, one motion of the model passes through the states \
+                 of all samples. V is the error that the recordings were allowed."
+            }
+        }
+    }
+}

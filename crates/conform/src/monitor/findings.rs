@@ -1,0 +1,51 @@
+//! What a monitor found, as findings.
+
+use reachtube_robot::JointKind;
+
+use crate::data::side::Side;
+use crate::monitor::leave::Leave;
+use crate::monitor::monitor::Totals;
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+
+impl Leave {
+    /// Returns the value as a finding about a joint of a name and a kind.
+    #[must_use]
+    pub fn finding(&self, name: &str, kind: JointKind) -> Finding {
+        let Self { time, window, state, excess, .. } = self;
+        let side = match self.side {
+            Side::Upper => "above",
+            Side::Lower => "below",
+        };
+        let rounding = if self.proved { "" } else { ", within rounding" };
+        let unit = state.kind.unit(kind);
+        let text = format!(
+            "{time:.4} s: {name} left its set: {state} is {excess:.2e} {unit} {side} \
+             it{rounding}, in the window from {window:.4} s"
+        );
+        let finding = Finding::new(Severity::Failure, Code::LeftSet, text).at(name);
+        finding.with("time", *time).with("window", *window).with("excess", *excess)
+    }
+}
+
+impl Totals {
+    /// Returns the verdict about all windows.
+    #[must_use]
+    pub fn finding(&self) -> Finding {
+        let Self { samples, windows, left, rows, outside } = *self;
+        let finding = if left == 0 {
+            let text = format!(
+                "never left: {samples} samples stayed in the sets of all windows, of which \
+                 {windows} ended"
+            );
+            Finding::new(Severity::Info, Code::NeverLeft, text)
+        } else {
+            let text = format!(
+                "left: {left} windows left their sets, {windows} ended; {outside} of {rows} rows \
+                 are outside"
+            );
+            Finding::new(Severity::Failure, Code::LeftSet, text)
+        };
+        finding.with("samples", samples as f64).with("windows_left", left as f64)
+    }
+}

@@ -1,0 +1,185 @@
+//! The question of a scenario, as every front end asks it.
+
+use reachtube_conform::{CheckJob, Finding, Keep, Model, Opened, Progress, Setup};
+use reachtube_files::distinct_names;
+use reachtube_recordings::RunSource;
+use reachtube_robot::Robot;
+use reachtube_verify::{
+    Answer, Body, Capsules, Margin, Scenario, Scene, Verification, Witness, findings, picture,
+    report, verify,
+};
+use serde_json::{Value, json};
+
+use crate::error::Result;
+use crate::prepared::check_job;
+
+/// A scenario whose model, capsules and obstacles were read.
+#[derive(Debug)]
+pub struct ScenarioJob {
+    scenario: Scenario,
+    model: Model,
+    setup: Setup,
+    body: Body,
+    scene: Scene,
+}
+
+/// The verdicts about the motions of a scenario.
+#[derive(Debug)]
+pub struct Verified {
+    /// The model, the recordings and the reachable sets.
+    pub opened: Opened,
+    /// The capsules around the links.
+    pub body: Body,
+    /// The obstacles.
+    pub scene: Scene,
+    /// The verdict about each motion.
+    pub motions: Vec<Verification>,
+}
+
+impl ScenarioJob {
+    /// Reads what a scenario names, but for the recordings.
+    ///
+    /// # Errors
+    ///
+    /// A model, robot or capsules that cannot be read; obstacles that are not possible.
+    pub fn new(scenario: Scenario) -> Result<Self> {
+        let (model, setup) = Model::open(&scenario.model)?;
+        Self::with_model(scenario, model, setup)
+    }
+
+    /// Reads what a scenario names, but for the recordings, with a model in memory.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_model(scenario: Scenario, model: Model, setup: Setup) -> Result<Self> {
+        let robot = Robot::from_description(&model.robot)?;
+        let scene = scenario.scene(&robot)?;
+        let body = Body::new(&robot, &Capsules::open(scenario.capsules.as_deref(), &robot)?);
+        Ok(Self { scenario, model, setup, body, scene })
+    }
+
+    /// Reads the recordings, and decides for each motion whether the links stay clear.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`verify`].
+    ///
+    /// # Errors
+    ///
+    /// As [`check_job`], [`CheckJob::open`] and [`verify`].
+    pub fn run(self, progress: &dyn Progress) -> Result<Verified> {
+        let Self { scenario, model, setup, body, scene } = self;
+        let job = check_job(model, setup, &scenario.data)?;
+        verified(job, &scenario, (body, scene), progress)
+    }
+
+    /// Decides as [`run`](Self::run) does over recordings that were opened, or prepared, already.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`verify`].
+    ///
+    /// # Errors
+    ///
+    /// As [`CheckJob::open`] and [`verify`].
+    pub fn run_over(
+        self,
+        source: impl RunSource + 'static,
+        progress: &dyn Progress,
+    ) -> Result<Verified> {
+        let Self { scenario, model, setup, body, scene } = self;
+        verified(CheckJob::new(model, setup, source), &scenario, (body, scene), progress)
+    }
+}
+
+fn verified(
+    job: CheckJob,
+    scenario: &Scenario,
+    (body, scene): (Body, Scene),
+    progress: &dyn Progress,
+) -> Result<Verified> {
+    let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
+    let opened = job.open(progress)?;
+    let robot = opened.problem.robot();
+    let rule = scenario.stop(robot, &opened.tube.sets.input_set)?;
+    let mut motions = verify(&opened.problem, &opened.tube, &body, &scene)?;
+    if let Some(rule) = &rule {
+        let stopped = motions.into_iter().map(|one| one.with_stops(robot, (&body, &scene), rule));
+        motions = stopped.collect();
+    }
+    Ok(Verified { opened, body, scene, motions })
+}
+
+impl Verified {
+    /// Returns the worst answer.
+    #[must_use]
+    pub fn answer(&self) -> Answer {
+        self.motions.iter().map(|one| one.answer).max().unwrap_or(Answer::Safe)
+    }
+
+    /// Returns the findings, the verdict first.
+    #[must_use]
+    pub fn findings(&self) -> Vec<Finding> {
+        findings(&self.motions, &self.scene)
+    }
+
+    /// Returns the answer as text.
+    #[must_use]
+    pub fn report(&self) -> String {
+        report(&self.motions, &self.body, &self.scene)
+    }
+
+    /// Returns the answer as JSON.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        let margin = |margin: &Margin| {
+            json!({ "link": self.body.joint_name(margin.joint), "margin": margin.distance,
+                    "time": margin.time })
+        };
+        let one = |one: &Verification| {
+            json!({
+                "case": one.case,
+                "answer": one.answer,
+                "clearances": one.clearances,
+                "margins": one.margins.iter().map(margin).collect::<Vec<_>>(),
+                "closest": one.closest,
+                "advice": one.advice,
+                "stops": one.stops,
+                "lost": one.lost,
+            })
+        };
+        json!({ "answer": self.answer(),
+                "motions": self.motions.iter().map(one).collect::<Vec<_>>(),
+                "findings": self.findings() })
+    }
+
+    /// Returns files by their names: a picture of each motion, and the simulated motion that comes
+    /// closest of each that is not safe.
+    #[must_use]
+    pub fn files(&self) -> Vec<(String, String)> {
+        let Self { motions, body, scene, .. } = self;
+        let names = distinct_names(motions.iter().map(|one| one.reach.name()), &["", "_closest"]);
+        let of_motion = |(one, name): (&Verification, String)| {
+            let drawn = (format!("{name}.svg"), picture(one, body, scene));
+            let found = one.closest.as_ref();
+            [drawn].into_iter().chain(found.map(|m| (format!("{name}_closest.csv"), self.csv(m))))
+        };
+        motions.iter().zip(names).flat_map(of_motion).collect()
+    }
+
+    /// Returns a simulated motion as CSV, `t,q1,..,qd1,..,tau1,..`, whose torque is the model's
+    /// input.
+    fn csv(&self, found: &Witness) -> String {
+        let n = self.body.joint_count();
+        let names = |kind: &str| (1..=n).map(|i| format!(",{kind}{i}")).collect::<String>();
+        let mut text = format!("t{}{}{}\n", names("q"), names("qd"), names("tau"));
+        for (k, t) in found.times.iter().enumerate() {
+            text += &t.to_string();
+            let row = found.states[2 * n * k..2 * n * (k + 1)].iter();
+            row.chain(&found.inputs[n * k..n * (k + 1)]).for_each(|x| text += &format!(",{x}"));
+            text.push('\n');
+        }
+        text
+    }
+}
