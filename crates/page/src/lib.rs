@@ -38,6 +38,7 @@ mod tables;
 mod terms;
 mod text;
 mod text_table;
+mod verify_page;
 
 #[cfg(test)]
 mod browser;
@@ -62,3 +63,4 @@ pub use stop_page::{STOP_PAGE_FILE, StopPage, write_stop_html};
 pub use suite_figure::{Band, Nominal, RunGauge, RunTrace, SuiteFigure, TightSpot, View};
 pub use suites::suite_figures;
 pub use text_table::TextTable;
+pub use verify_page::{VERIFY_PAGE_FILE, VerifyPage, write_verify_html};

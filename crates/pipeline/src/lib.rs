@@ -22,6 +22,7 @@ mod live;
 mod mean_position;
 mod motors;
 mod noise;
+mod planned;
 mod plausible;
 mod prediction;
 mod prepared;

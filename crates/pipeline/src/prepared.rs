@@ -6,12 +6,14 @@ use reachtube_recordings::{DataSet, MemoryRuns, Preparation, any_simulated};
 use reachtube_robot::Robot;
 
 use crate::error::Result;
+use crate::planned::Planned;
 use crate::robot::prepare_for;
 use crate::sorted::{index_names, origins_of};
 use crate::windows::Prepared;
 
-/// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, or
-/// for a model that `model` made, logs, which are prepared as its own were.
+/// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
+/// CSV file (a planned motion), or for a model that `model` made, logs, which are prepared as its
+/// own were.
 ///
 /// # Errors
 ///
@@ -24,6 +26,7 @@ pub fn check_job(model: Model, setup: Setup, data: &Path) -> Result<CheckJob> {
         .transpose()?;
     Ok(match windows {
         Some(windows) => CheckJob::new(model, setup, windows),
+        None if data.is_file() => CheckJob::new(model, setup, Planned::of(data)),
         None => {
             let data = DataSet::open(data).map_err(reachtube_conform::Error::from)?;
             CheckJob::new(model, setup, data)

@@ -101,7 +101,13 @@ fn verified(
 ) -> Result<Verified> {
     let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
     let opened = job.open(progress)?;
-    let motions = verify(&opened.problem, &opened.tube, &body, &scene)?;
+    let robot = opened.problem.robot();
+    let rule = scenario.stop(robot, &opened.tube.sets.input_set)?;
+    let mut motions = verify(&opened.problem, &opened.tube, &body, &scene)?;
+    if let Some(rule) = &rule {
+        let stopped = motions.into_iter().map(|one| one.with_stops(robot, (&body, &scene), rule));
+        motions = stopped.collect();
+    }
     Ok(Verified { opened, body, scene, motions })
 }
 
@@ -139,6 +145,7 @@ impl Verified {
                 "margins": one.margins.iter().map(margin).collect::<Vec<_>>(),
                 "closest": one.closest,
                 "advice": one.advice,
+                "stops": one.stops,
                 "lost": one.lost,
             })
         };

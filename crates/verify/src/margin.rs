@@ -65,27 +65,43 @@ impl Body {
     ) -> Vec<(usize, f64)> {
         let n = self.joint_count();
         let shift: Vec<Interval> = (0..n).map(|i| deviation(reach, k, i)).collect();
-        let sizes: Vec<f64> = shift.iter().map(|e| e.mag()).collect();
         let nominal = |i: usize| {
             let [here, next] = [k, k + 1].map(|k| reach.nominal[k * 2 * n + i]);
             Interval::point(here).hull(Interval::point(next))
         };
-        let moved: Vec<f64> = (0..n).map(|i| nominal(i).rad()).collect();
+        let nominal: Vec<Interval> = (0..n).map(nominal).collect();
+        let ways = self.ways(workspace, &nominal, &shift);
+        self.capsules().iter().map(|capsule| capsule.joint).zip(ways).collect()
+    }
+
+    /// Bounds how far each capsule moves while the joints shift by a vector in `shift`, from any
+    /// positions in `start`: no point of the segment moves further than its ends.
+    ///
+    /// # Guarantee
+    ///
+    /// Upper bounds, directed rounding.
+    pub(crate) fn ways(
+        &self,
+        workspace: &mut Workspace,
+        start: &[Interval],
+        shift: &[Interval],
+    ) -> Vec<f64> {
+        let sizes: Vec<f64> = shift.iter().map(|e| e.mag()).collect();
+        let moved: Vec<f64> = start.iter().map(|side| side.rad()).collect();
         let Workspace { posture, points: [point, _], q, radii } = workspace;
         q.clear();
-        q.extend((0..n).map(|i| nominal(i).mid()));
+        q.extend(start.iter().map(|side| side.mid()));
         radii.clear();
         radii.extend(moved.iter().zip(&sizes).map(|(a, b)| add_up(*a, *b)));
         self.chain.pose(q, posture);
         let mut of_end = |joint: usize, end| {
             point.at(&self.chain, posture, (joint, end), radii);
-            point.distance(&moved, &shift, &sizes)
+            point.distance(&moved, shift, &sizes)
         };
-        let distances = self.ends().map(|(capsule, [from, to])| {
-            let joint = capsule.joint;
-            (joint, of_end(joint, from).max(of_end(joint, to)))
+        let ways = self.ends().map(|(capsule, [from, to])| {
+            of_end(capsule.joint, from).max(of_end(capsule.joint, to))
         });
-        distances.collect()
+        ways.collect()
     }
 }
 

@@ -22,15 +22,16 @@ const VIEWS: [(&str, [usize; 2]); 2] =
     [("from the side: x to the right, z up", [0, 2]), ("from above: x to the right, y up", [0, 1])];
 
 /// What the colours mean.
-const KEY: &str = "grey: all motions of the model; blue: the nominal one; red: the closest one \
-                   found; brown: obstacles";
+const KEY: &str = "grey: all motions of the model; orange: the worst stop; blue: the nominal \
+                   motion; red: the closest one found; brown: obstacles";
 
 /// Draws a verification as an SVG document. Seen along an axis, a capsule is a thick line with
 /// round ends.
 ///
 /// Grey is what the links sweep on all motions of the model; blue is the nominal motion at the time
 /// of the smallest proved distance; red is the simulated motion that comes closest, if one was
-/// sought. Obstacles are brown, as they are at that time.
+/// sought. Orange is what the links sweep over the stop that comes closest. Obstacles are brown, as
+/// they are at that time.
 #[must_use]
 pub fn picture(verification: &Verification, body: &Body, scene: &Scene) -> String {
     let Verification { reach, clearances, closest, .. } = verification;
@@ -51,7 +52,8 @@ pub fn picture(verification: &Verification, body: &Body, scene: &Scene) -> Strin
     };
     let nominal = at(&reach.nominal);
     let found = closest.as_ref().map_or_else(Vec::new, |found| at(&found.states));
-    let scale = Scale::around(&swept, scene);
+    let stopping = stop_swept(verification, body);
+    let scale = Scale::around(&[&swept[..], &stopping].concat(), scene);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" \
          font-family=\"sans-serif\" font-size=\"13\">\n<!-- {MARK} -->\n<title>{}</title>\n\
@@ -69,6 +71,7 @@ pub fn picture(verification: &Verification, body: &Body, scene: &Scene) -> Strin
         );
         scene.obstacles.iter().for_each(|o| scale.solid(&mut svg, axes, &o.solid, o.speed * time));
         scale.capsules(&mut svg, axes, &swept, "#888", 0.12);
+        scale.capsules(&mut svg, axes, &stopping, "#e08a00", 0.12);
         scale.capsules(&mut svg, axes, &nominal, "#1f5fa8", 0.75);
         scale.capsules(&mut svg, axes, &found, "#c62828", 0.75);
         let _ = write!(
@@ -85,6 +88,15 @@ pub fn picture(verification: &Verification, body: &Body, scene: &Scene) -> Strin
         escaped(&title(verification, time)),
     );
     svg
+}
+
+/// Returns what the links sweep over the stop that comes closest to an obstacle.
+pub(crate) fn stop_swept(verification: &Verification, body: &Body) -> Vec<SweptCapsule> {
+    let worst = verification.stops.as_ref().and_then(|stops| stops.worst.as_ref());
+    let Some((_, stop)) = worst else { return Vec::new() };
+    let occupancy = body.occupancy(&stop.times, &stop.tube);
+    let stride = occupancy.len().div_ceil(STEPS / 2).max(1);
+    (0..occupancy.len()).step_by(stride).flat_map(|k| occupancy.step(k)).copied().collect()
 }
 
 fn title(verification: &Verification, time: f64) -> String {

@@ -4,8 +4,10 @@ use reachtube_conform::result::Table;
 use reachtube_scalar::number::at_least;
 
 use crate::body::body::Body;
+use crate::report_stops::triggers;
 use crate::scene::scenario::Scene;
-use crate::verdict::findings::{findings, lower, worst_first};
+use crate::verdict::findings::{findings, worst_first};
+use crate::verdict::stop_verdict::lower;
 use crate::verdict::verification::{Answer, Verification};
 
 /// Returns the verdicts as text: the worst first, a table of the motions, the margins, and what to
@@ -17,11 +19,28 @@ pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> String {
     let (verdict, advice) = findings.split_at(findings.len().min(1));
     let mut lines: Vec<String> = verdict.iter().map(|finding| finding.text.clone()).collect();
     lines.push(String::new());
-    let header = ["motion", "answer", "closest link", "obstacle", "proved distance [m]", "at [s]"];
-    lines.push(Table::new(header, order.iter().map(|v| row(v)).collect()).to_string());
-    lines.push(margins(all, body));
+    lines.push(motions(&order).to_string());
+    lines.extend(triggers(all).map(|(table, words)| format!("{table}{words}\n")));
+    lines.push(margins(all, body).to_string());
     lines.extend(advice.iter().take(3).map(|finding| finding.text.clone()));
     lines.join("\n").trim_end().to_string() + "\n"
+}
+
+/// Returns the verdict about the worst motion as a sentence, and tables of the motions with the
+/// worst first, of the stops and of the margins.
+#[must_use]
+pub fn summary(all: &[Verification], body: &Body, scene: &Scene) -> (String, Vec<Table>) {
+    let order = worst_first(all);
+    let sentence = findings(all, scene).into_iter().next().map(|verdict| verdict.text);
+    let stops = triggers(all).map(|(table, _)| table);
+    let first = Table { title: "motions, the worst first".into(), ..motions(&order) };
+    let tables = [first].into_iter().chain(stops).chain([margins(all, body)]);
+    (sentence.unwrap_or_default(), tables.collect())
+}
+
+fn motions(order: &[&Verification]) -> Table {
+    let header = ["motion", "answer", "closest link", "obstacle", "proved distance [m]", "at [s]"];
+    Table::new(header, order.iter().map(|v| row(v)).collect())
 }
 
 fn row(v: &Verification) -> Vec<String> {
@@ -30,21 +49,26 @@ fn row(v: &Verification) -> Vec<String> {
         Answer::Undecided => "undecided",
         Answer::Unsafe => "unsafe",
     };
+    let motion = v.clearances.first().map(|p| (&p.link, &p.obstacle, p.distance, p.time));
+    let stop = v.stops.iter().flat_map(|stops| stops.clearances.first());
+    let stop = stop.map(|p| (&p.link, &p.obstacle, p.distance, p.from));
+    // A stop counts from the sample at which it begins.
+    let pair = motion.into_iter().chain(stop).min_by(|a, b| a.2.total_cmp(&b.2));
     let mut row = vec![v.case.clone(), answer.into()];
-    match v.clearances.first() {
+    match pair {
         None => row.extend(vec![String::new(); 4]),
-        Some(pair) => row.extend([
-            pair.link.clone(),
-            pair.obstacle.clone(),
-            if pair.distance > 0.0 { lower(pair.distance) } else { "none".into() },
-            format!("{:.3}", pair.time),
+        Some((link, obstacle, distance, time)) => row.extend([
+            link.clone(),
+            obstacle.clone(),
+            if distance > 0.0 { lower(distance) } else { "none".into() },
+            format!("{time:.3}"),
         ]),
     }
     row
 }
 
 /// Returns the largest margin of each link as a table.
-fn margins(all: &[Verification], body: &Body) -> String {
+fn margins(all: &[Verification], body: &Body) -> Table {
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut links: Vec<usize> = body.capsules().iter().map(|capsule| capsule.joint).collect();
     links.sort_unstable();
@@ -67,5 +91,4 @@ fn margins(all: &[Verification], body: &Body) -> String {
         title: "margins: how far a link can be from its nominal motion".into(),
         ..Table::new(["link of", "margin [m]", "motion", "at [s]"], rows)
     }
-    .to_string()
 }

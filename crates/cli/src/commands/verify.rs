@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::conform::Opened;
+use reachtube::page::{VERIFY_PAGE_FILE, VerifyPage, write_verify_html};
 use reachtube::pipeline::{ScenarioJob, Verified};
 use reachtube::verify::{Answer, Scenario};
 use reachtube::write;
@@ -25,8 +26,9 @@ cell.toml names the model, the recordings and the obstacles (docs/verify.md):
   name = \"table\"
   half-space = { normal = [0, 0, 1], offset = -0.3 }
 
-The folder gets a picture of each motion, NAME.svg; if it is not safe, also the simulated motion
-that comes closest, NAME_closest.csv.
+The folder gets a page with the worst motion in three dimensions, verify.html, and a picture of
+each motion, NAME.svg; if it is not safe, also the simulated motion that comes closest,
+NAME_closest.csv. With a [stop] in the scenario, each link must stay clear until standstill.
 
 Exit codes: 0 safe, 1 unsafe, 2 error, 3 undecided.";
 
@@ -37,7 +39,7 @@ pub(crate) struct Arguments {
     /// Scenario: a TOML file with model, recordings and obstacles
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
-    /// Folder for the pictures and the closest motions
+    /// Folder for the page, the pictures and the closest motions
     #[arg(long, value_name = "FOLDER", default_value = "verify")]
     pub out: PathBuf,
 }
@@ -69,9 +71,14 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Writes the pictures, and the closest motions of what is not safe.
 fn write_files(out: &Path, verified: &Verified) -> Result<()> {
+    let Verified { motions, body, scene, .. } = verified;
     let files = verified.files().into_iter().map(|(name, text)| (out.join(name), text));
     let files: Vec<(PathBuf, String)> = files.collect();
-    output::claim_all(files.iter().map(|(path, _)| path))?;
+    let mut html = Vec::new();
+    write_verify_html(&VerifyPage { all: motions, body, scene }, &mut html)?;
+    let page = out.join(VERIFY_PAGE_FILE);
+    output::claim_all(files.iter().map(|(path, _)| path).chain([&page]))?;
+    write::atomically(&page, |file| file.write_all(&html))?;
     for (path, text) in &files {
         write::atomically(path, |file| file.write_all(text.as_bytes()))?;
     }

@@ -48,3 +48,31 @@ fn the_page_opens() {
     assert!(tab.messages.is_empty(), "{:?}", tab.messages);
     assert_eq!(tab.script("document.querySelectorAll('figure').length"), json!(5));
 }
+
+#[test]
+#[ignore = "needs a browser"]
+fn the_view_of_a_verification_follows_its_slider() {
+    let lab = Lab::new();
+    lab.conform("--out model.json").exits(0);
+    lab.write(
+        "capsules.toml",
+        "[[capsule]]\nlink = 2\nfrom = [0, 0, 0]\nto = [0.6, 0, 0]\nradius = 0.04\n",
+    );
+    lab.write("brakes.toml", "torque = [[5, 8], [5, 8]]\ndelay = [0.0, 0.01]\n");
+    lab.write(
+        "cell.toml",
+        "model = \"model.json\"\ndata = \"data\"\ncapsules = \"capsules.toml\"\n\
+         [[obstacle]]\nname = \"it\"\nsphere = { centre = [1, 1, 1], radius = 0.1 }\n\
+         [stop]\nbrakes = \"brakes.toml\"\n",
+    );
+    lab.run("verify cell.toml --out cell").exits(0);
+    let mut tab = Tab::new(400, 900, true);
+    tab.open(lab.read("cell/verify.html").as_bytes()).unwrap();
+    let count = "document.getElementById('scene').data.length";
+    assert_eq!(tab.script(count), json!(5));
+    let last = "const s = document.getElementById('slider'); s.value = s.max; \
+                s.dispatchEvent(new Event('input')); document.getElementById('time').textContent";
+    assert!(tab.script(last).as_str().unwrap().ends_with("in the worst stop"));
+    let wide = "document.documentElement.scrollWidth <= innerWidth";
+    assert_eq!(tab.script(wide), json!(true));
+}

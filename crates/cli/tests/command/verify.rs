@@ -41,7 +41,7 @@ fn a_far_obstacle_is_safe_with_a_proved_distance_and_a_picture() {
     let run = verify(&lab, "", &obstacle(FAR), "").exits(0);
     assert!(run.stdout.starts_with("safe: on every motion of the model"), "{}", run.stdout);
     assert!(run.stdout.contains("margin [m]"), "{}", run.stdout);
-    assert_eq!(lab.names("cell"), ["A.svg", "B.svg"]);
+    assert_eq!(lab.names("cell"), ["A.svg", "B.svg", "verify.html"]);
     let picture = lab.read("cell/A.svg");
     assert!(picture.starts_with("<svg") && picture.contains("Written by reachtube"));
     let json = verify(&lab, "", &obstacle(FAR), "--json").exits(0).json();
@@ -61,7 +61,7 @@ fn a_motion_that_touches_is_a_witness() {
         "{}",
         run.stdout
     );
-    assert_eq!(lab.names("cell"), ["A.svg", "A_closest.csv"]);
+    assert_eq!(lab.names("cell"), ["A.svg", "A_closest.csv", "verify.html"]);
     let json = verify(&lab, "suites = [\"A\"]", &obstacle(IN_THE_WAY), "--json").exits(1).json();
     fits("verify", &json);
     let closest = &json["motions"][0]["closest"];
@@ -173,4 +173,80 @@ fn files_of_others_are_not_overwritten() {
     let run = lab.run("verify cell.toml --out cell");
     run.fails_with_last(&["A_closest.csv", "--force"]);
     assert_eq!(lab.read("cell/A_closest.csv"), "mine\n");
+}
+
+const BRAKES: &str = "torque = [[5, 8], [5, 8]]\ndelay = [0.0, 0.01]\ndeceleration = [4, 4]\n";
+
+#[test]
+fn a_stop_may_begin_at_any_sample() {
+    let lab = lab();
+    lab.write("brakes.toml", BRAKES);
+    let stop = "[stop]\nbrakes = \"brakes.toml\"";
+    let it = format!("{}{stop}\n", obstacle(FAR));
+    let run = verify(&lab, "suites = [\"A\"]", &it, "").exits(0);
+    assert!(run.stdout.starts_with("safe: up to a stop of category 0 from any"), "{}", run.stdout);
+    assert!(run.stdout.contains("trigger at [m]"), "{}", run.stdout);
+    let json = verify(&lab, "suites = [\"A\"]", &it, "--json").exits(0).json();
+    fits("verify", &json);
+    let stops = &json["motions"][0]["stops"];
+    assert_eq!(stops["proved"], stops["samples"]);
+    // Each distance to trigger at is the way of the link, and 1.6 m/s for the time of the stop.
+    for link in stops["trigger"].as_array().unwrap() {
+        let [distance, way, time] = ["distance", "way", "time"].map(|k| link[k].as_f64().unwrap());
+        assert!((distance - way - 1.6 * time).abs() < 1e-9 && time > 0.01, "{link}");
+        // The first link turns about the axis of its capsule, so that this stays where it is.
+        assert_eq!(way > 0.0, link["link"] == "axis2", "{link}");
+    }
+    // Without brakes that hold there is no standstill.
+    lab.write("brakes.toml", format!("{BRAKES}error = [9, 9]\n"));
+    let run = verify(&lab, "suites = [\"A\"]", &it, "").exits(3);
+    assert!(run.stdout.contains("no standstill is proved"), "{}", run.stdout);
+    fits("verify", &verify(&lab, "suites = [\"A\"]", &it, "--json").exits(3).json());
+}
+
+#[test]
+fn a_stop_that_is_triggered_early_enough_is_safe() {
+    let lab = lab();
+    lab.write("brakes.toml", BRAKES);
+    let person = "[[person]]\nname = \"p\"\n\
+                  capsule = { from = [1.5, 0, 0], to = [1.5, 0, 1.7], radius = 0.2 }\n";
+    let scene = |distance: f64| {
+        format!("{person}[stop]\nbrakes = \"brakes.toml\"\ndistance = {distance}\n")
+    };
+    let head = "suites = [\"A\"]";
+    let json = verify(&lab, head, &scene(0.01), "--json").exits(3).json();
+    let links = json["motions"][0]["stops"]["trigger"].as_array().unwrap();
+    let needed = links.iter().map(|link| link["distance"].as_f64().unwrap()).fold(0.0, f64::max);
+    verify(&lab, head, &scene(0.5 * needed), "").exits(3);
+    let run = verify(&lab, head, &scene(needed + 0.001), "").exits(0);
+    assert!(run.stdout.contains("that is triggered at"), "{}", run.stdout);
+}
+
+#[test]
+fn a_wrong_stop_is_refused_with_its_line() {
+    let lab = lab();
+    lab.write("brakes.toml", BRAKES.replace("deceleration = [4, 4]\n", ""));
+    let fails = |stop: &str, parts: &[&str]| {
+        let text = format!("{}[stop]\nbrakes = \"brakes.toml\"\n{stop}\n", obstacle(FAR));
+        verify(&lab, "", &text, "").fails_with(parts);
+    };
+    fails("category = 1", &["cell.toml:8: stop: the brakes' file has no", "deceleration = ["]);
+    fails("category = 2", &["category = 2", "0 or 1"]);
+    fails("distance = 0", &["distance = 0", "above 0, in m"]);
+    fails("speed = 1", &["unknown field `speed`", "docs/verify.md"]);
+}
+
+#[test]
+fn a_planned_motion_is_one_file() {
+    let lab = lab();
+    let recorded = lab.names("data").into_iter().find(|name| name.starts_with("A")).unwrap();
+    lab.write("plan.csv", lab.read(&format!("data/{recorded}")));
+    let it = obstacle(FAR);
+    lab.write(
+        "cell.toml",
+        format!("model = \"model.json\"\ndata = \"plan.csv\"\ncapsules = \"capsules.toml\"\n{it}"),
+    );
+    let json = lab.run("verify cell.toml --out cell --force --json").exits(0).json();
+    assert_eq!(json["motions"].as_array().unwrap().len(), 1);
+    assert!(json["motions"][0]["case"].as_str().unwrap().contains("plan"), "{json}");
 }

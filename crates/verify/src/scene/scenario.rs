@@ -3,15 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Rotation3;
+use reachtube_reach::Hyperrectangle;
 use reachtube_robot::Robot;
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::error::{Error, Result, line_of};
 use crate::scene::obstacle::{Obstacle, Solid};
+use crate::stop::brakes::Brakes;
+use crate::stop::category::Category;
+use crate::stop::rule::StopRule;
 
 /// The speed at which a person approaches, m/s (ISO 13855, walking).
-const WALKING: f64 = 1.6;
+pub(crate) const WALKING: f64 = 1.6;
 
 /// Number of parts into which a step is divided, at most, where its enclosure comes too close.
 const REFINE: u32 = 8;
@@ -32,6 +36,7 @@ pub struct Scenario {
     pub capsules: Option<PathBuf>,
     text: String,
     origin: String,
+    folder: PathBuf,
     file: File,
 }
 
@@ -61,6 +66,16 @@ struct File {
     obstacle: Vec<Spanned<ObstacleTable>>,
     #[serde(default)]
     person: Vec<Spanned<ObstacleTable>>,
+    stop: Option<Spanned<StopTable>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StopTable {
+    brakes: PathBuf,
+    #[serde(default)]
+    category: u8,
+    distance: Option<f64>,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -139,6 +154,7 @@ impl Scenario {
             capsules,
             text,
             origin: origin.into(),
+            folder: folder.into(),
             file,
         })
     }
@@ -187,6 +203,36 @@ impl Scenario {
         }
         let clearance = clearance.as_ref().map_or(0.0, |clearance| *clearance.get_ref());
         Ok(Scene { obstacles, clearance, refine: parts })
+    }
+
+    /// Returns the stops of the scenario, with their brakes; `None` if it has none. The torque of
+    /// the drives may be off by any vector of `input_set`.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read; [`Error::Syntax`] and [`Error::Invalid`], with the line.
+    pub fn stop(&self, robot: &Robot, input_set: &Hyperrectangle) -> Result<Option<StopRule>> {
+        let Some(table) = &self.file.stop else { return Ok(None) };
+        let at = table.span().start;
+        let invalid = |problem: &str, remedy: &str| self.invalid(at, "stop: ", problem, remedy);
+        let StopTable { brakes, category, distance } = table.get_ref();
+        let path = self.folder.join(brakes);
+        let remedy = "write the brakes, as docs/verify.md describes";
+        let text = reachtube_files::read_text(&path, remedy)?;
+        let brakes = Brakes::from_toml(&text, &path.display().to_string(), robot)?;
+        let category = match category {
+            0 => Category::Zero,
+            1 => Category::one(&brakes, input_set).ok_or_else(|| {
+                let problem = "the brakes' file has no deceleration";
+                invalid(problem, "add `deceleration = [...]`, in rad/s² for each joint")
+            })?,
+            other => return Err(invalid(&format!("category = {other}"), "give 0 or 1")),
+        };
+        if let Some(wrong) = distance.filter(|distance| !(*distance > 0.0 && distance.is_finite()))
+        {
+            return Err(invalid(&format!("distance = {wrong}"), "give a number above 0, in m"));
+        }
+        Ok(Some(StopRule { brakes, category, distance: *distance }))
     }
 
     fn obstacle(

@@ -1,8 +1,8 @@
 //! Stops from every sample of recorded motions.
 
 use rayon::prelude::*;
-use reachtube_conform::Problem;
 use reachtube_conform::data::Suite;
+use reachtube_conform::{Problem, SuiteReach};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use serde::Serialize;
@@ -51,7 +51,9 @@ pub fn stops_along(
 ) -> Vec<WorstStop> {
     let of_suite = |suite: &Suite| {
         let motion = Motion::of(suite, 2 * problem.joints());
-        let stops = motion.stops(problem.robot(), brakes, category, every.max(1));
+        let from_sample = |k: usize, stop: Option<Stop>| (motion.times[k], stop);
+        let question = (brakes, category, every.max(1));
+        let stops = motion.stops(problem.robot(), question, from_sample);
         worst(problem.robot(), &suite.entry.name, &stops)
     };
     problem.recordings().suites.iter().flat_map(of_suite).collect()
@@ -60,8 +62,8 @@ pub fn stops_along(
 /// The stop from the sample at a time (s); `None` if its path ends too early.
 type FromSample = (f64, Option<Stop>);
 
-/// A recorded motion: sample times, and the states at them.
-struct Motion<'a> {
+/// A motion: sample times, and the states at them.
+pub(crate) struct Motion<'a> {
     times: &'a [f64],
     /// Row-major, samples x 2n.
     states: Vec<Interval>,
@@ -80,23 +82,39 @@ impl<'a> Motion<'a> {
         Self { times, states: (0..times.len() * width).map(side).collect(), width }
     }
 
-    /// Encloses the stops from every `every`th sample.
-    fn stops(
+    /// Takes the states of a reachable set.
+    pub(crate) fn of_reach(reach: &'a SuiteReach) -> Self {
+        let bounds = reach.lower.iter().zip(&reach.upper);
+        let states = bounds.map(|(low, high)| Interval::point(*low).hull(Interval::point(*high)));
+        let (states, width) = (states.collect::<Vec<_>>(), reach.dimension);
+        Self { times: &reach.times[..states.len() / width], states, width }
+    }
+
+    /// Returns the sample times, s.
+    pub(crate) fn times(&self) -> &[f64] {
+        self.times
+    }
+
+    /// Returns the middles of the states, which a controller follows.
+    pub(crate) fn middle(&self) -> Vec<f64> {
+        self.states.iter().map(|side| side.mid()).collect()
+    }
+
+    /// Encloses the stops from every `every`th sample, and returns what `of` makes of the sample
+    /// and its stop.
+    pub(crate) fn stops<T: Send>(
         &self,
         robot: &Robot,
-        brakes: &Brakes,
-        category: &Category,
-        every: usize,
-    ) -> Vec<FromSample> {
+        (brakes, category, every): (&Brakes, &Category, usize),
+        of: impl Fn(usize, Option<Stop>) -> T + Sync,
+    ) -> Vec<T> {
         if self.times.len() < 2 {
             return Vec::new();
         }
-        let middle: Vec<f64> = self.states.iter().map(|side| side.mid()).collect();
-        let path = Path::through(self.times, &middle);
+        let path = Path::through(self.times, &self.middle());
         let from_sample = |k: usize| {
             let state = &self.states[k * self.width..(k + 1) * self.width];
-            let time = self.times[k];
-            (time, category.stop(robot, brakes, (&path, time), state))
+            of(k, category.stop(robot, brakes, (&path, self.times[k]), state))
         };
         let samples = (0..self.times.len()).into_par_iter();
         samples.filter(|k| k % every == 0).map(from_sample).collect()

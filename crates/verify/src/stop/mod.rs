@@ -10,6 +10,7 @@ mod extension;
 mod findings;
 pub(crate) mod path;
 pub(crate) mod recorded;
+pub(crate) mod rule;
 #[expect(clippy::module_inception, reason = "the stop is the concept of this folder")]
 pub(crate) mod stop;
 pub(crate) mod study;

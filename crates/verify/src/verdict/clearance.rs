@@ -38,18 +38,17 @@ pub struct Clearance {
 /// A capsule and an obstacle, by their indices.
 type Pair = (usize, usize);
 
-/// What the search over the parts of steps needs.
-struct Search<'a> {
+/// The pairs of a capsule and an obstacle that concerns it, whose distances are sought.
+pub(super) struct Search<'a> {
     body: &'a Body,
     scene: &'a Scene,
-    reach: &'a SuiteReach,
-    pairs: Vec<Pair>,
+    pub(super) pairs: Vec<Pair>,
 }
 
 #[derive(Default)]
-struct Memory {
-    workspace: Workspace,
-    positions: Vec<Interval>,
+pub(super) struct Memory {
+    pub(super) workspace: Workspace,
+    pub(super) positions: Vec<Interval>,
 }
 
 /// Returns the smallest proved distance of each link from each obstacle that concerns it.
@@ -64,34 +63,45 @@ pub(crate) fn clearances(
     reach: &SuiteReach,
     refine: u32,
 ) -> Vec<Clearance> {
-    let of_capsule = |(capsule, shape): (usize, &crate::Capsule)| {
-        let concerned = scene.obstacles.iter().enumerate();
-        let concerned = concerned.filter(|(_, obstacle)| obstacle.concerns(shape.joint));
-        concerned.map(|(obstacle, _)| (capsule, obstacle)).collect::<Vec<_>>()
-    };
-    let pairs: Vec<Pair> = body.capsules().iter().enumerate().flat_map(of_capsule).collect();
-    let search = Search { body, scene, reach, pairs };
+    let search = Search::new(body, scene);
     let of_step = |memory: &mut Memory, step: usize| -> Vec<(f64, usize)> {
         let mut found = vec![f64::INFINITY; search.pairs.len()];
-        search.lower(memory, PartOfStep::whole(step), refine, &mut found);
+        search.lower(memory, reach, (PartOfStep::whole(step), refine), &mut found);
         found.into_iter().map(|distance| (distance, step)).collect()
     };
     let steps = (0..reach.tube.len()).into_par_iter().map_init(Memory::default, of_step);
     let smallest = steps.reduce_with(|left, right| {
         left.into_iter().zip(right).map(|(a, b)| if b.0 < a.0 { b } else { a }).collect()
     });
-    search.by_link(&smallest.unwrap_or_default())
+    search.by_link(reach, &smallest.unwrap_or_default())
 }
 
-impl Search<'_> {
-    /// Lowers the distances `found` (one per pair) to the distances over a part of a step.
-    fn lower(&self, memory: &mut Memory, part: PartOfStep, parts: u32, found: &mut [f64]) {
-        part.positions(self.reach, &mut memory.positions);
-        let here = self.distances(memory, part.end(self.reach));
+impl<'a> Search<'a> {
+    pub(super) fn new(body: &'a Body, scene: &'a Scene) -> Self {
+        let of_capsule = |(capsule, shape): (usize, &crate::Capsule)| {
+            let concerned = scene.obstacles.iter().enumerate();
+            let concerned = concerned.filter(|(_, obstacle)| obstacle.concerns(shape.joint));
+            concerned.map(|(obstacle, _)| (capsule, obstacle)).collect::<Vec<_>>()
+        };
+        let pairs = body.capsules().iter().enumerate().flat_map(of_capsule).collect();
+        Self { body, scene, pairs }
+    }
+
+    /// Lowers the distances `found` (one per pair) to the distances over a part of a step, which
+    /// may be divided into a number of parts.
+    fn lower(
+        &self,
+        memory: &mut Memory,
+        reach: &SuiteReach,
+        (part, parts): (PartOfStep, u32),
+        found: &mut [f64],
+    ) {
+        part.positions(reach, &mut memory.positions);
+        let here = self.distances(memory, part.end(reach));
         let is_close = here.iter().any(|distance| *distance <= self.scene.clearance);
         if is_close && parts > 1 {
             for half in part.halves() {
-                self.lower(memory, half, parts / 2, found);
+                self.lower(memory, reach, (half, parts / 2), found);
             }
         } else {
             found.iter_mut().zip(here).for_each(|(found, here)| *found = found.min(here));
@@ -99,7 +109,7 @@ impl Search<'_> {
     }
 
     /// Returns the distance of each pair while the joints lie in the box of positions.
-    fn distances(&self, memory: &mut Memory, time: f64) -> Vec<f64> {
+    pub(super) fn distances(&self, memory: &mut Memory, time: f64) -> Vec<f64> {
         let Memory { workspace, positions } = memory;
         workspace.pose(self.body, positions);
         let mut distances = Vec::with_capacity(self.pairs.len());
@@ -123,7 +133,7 @@ impl Search<'_> {
     }
 
     /// Returns the smallest distance of each link from each obstacle.
-    fn by_link(&self, smallest: &[(f64, usize)]) -> Vec<Clearance> {
+    pub(super) fn by_link(&self, reach: &SuiteReach, smallest: &[(f64, usize)]) -> Vec<Clearance> {
         let mut all: Vec<Clearance> = Vec::new();
         for (&(capsule, index), &(distance, step)) in self.pairs.iter().zip(smallest) {
             let joint = self.body.capsules()[capsule].joint;
@@ -131,7 +141,7 @@ impl Search<'_> {
                 link: self.body.joint_name(joint).into(),
                 obstacle: self.scene.obstacles[index].name.clone(),
                 distance,
-                time: self.reach.times[step],
+                time: reach.times[step],
                 joint,
                 index,
                 step,

@@ -2,10 +2,10 @@
 
 use reachtube_conform::Finding;
 use reachtube_conform::result::{Code, Severity};
-use reachtube_scalar::number::outward;
 
 use crate::scene::scenario::Scene;
 use crate::verdict::decide::Advice;
+use crate::verdict::stop_verdict::{lower, stop_verdict};
 use crate::verdict::verification::{Answer, Verification};
 
 /// Returns the findings: the verdict about the worst motion, then what would decide about each
@@ -17,12 +17,20 @@ pub fn findings(all: &[Verification], scene: &Scene) -> Vec<Finding> {
     verdict.into_iter().chain(order.iter().filter_map(|v| next(v))).collect()
 }
 
-/// Returns the motions, the worst first.
-pub(crate) fn worst_first(all: &[Verification]) -> Vec<&Verification> {
+/// Returns the verdicts with the worst first: unsafe before undecided before safe, and then by the
+/// smallest proved distance.
+#[must_use]
+pub fn worst_first(all: &[Verification]) -> Vec<&Verification> {
     let mut order: Vec<&Verification> = all.iter().collect();
-    let smallest = |v: &Verification| v.clearances.first().map_or(f64::INFINITY, |c| c.distance);
-    order.sort_by(|a, b| b.answer.cmp(&a.answer).then(smallest(a).total_cmp(&smallest(b))));
+    order.sort_by(|a, b| b.answer.cmp(&a.answer).then(proved(a).total_cmp(&proved(b))));
     order
+}
+
+/// Returns the smallest proved distance of a motion and its stops \[m\].
+fn proved(v: &Verification) -> f64 {
+    let motion = v.clearances.first().map(|pair| pair.distance);
+    let stop = v.stops.as_ref().and_then(|stops| Some(stops.clearances.first()?.distance));
+    motion.into_iter().chain(stop).fold(f64::INFINITY, f64::min)
 }
 
 /// Returns the verdict about the worst motion.
@@ -32,6 +40,7 @@ fn verdict(worst: &Verification, scene: &Scene) -> Finding {
         clearance => format!(" more than {clearance} m"),
     };
     let case = &worst.case;
+    let stopped = stop_verdict(worst, &keep);
     let finding = match worst.answer {
         Answer::Unsafe => {
             Finding::new(Severity::Failure, Code::Unsafe, too_close(worst).unwrap_or_default())
@@ -66,9 +75,9 @@ fn verdict(worst: &Verification, scene: &Scene) -> Finding {
             Finding::new(Severity::Warning, Code::Undecided, text)
         }
     };
-    let proved = worst.clearances.first().map_or(f64::INFINITY, |pair| pair.distance);
     let simulated = worst.closest.as_ref().map_or(f64::INFINITY, |found| found.distance);
-    finding.at(case).with("proved_distance", proved).with("simulated_distance", simulated)
+    let finding = Finding { text: stopped.unwrap_or(finding.text.clone()), ..finding };
+    finding.at(case).with("proved_distance", proved(worst)).with("simulated_distance", simulated)
 }
 
 /// Returns how close the witness comes, as a sentence.
@@ -123,10 +132,4 @@ fn next(v: &Verification) -> Option<Finding> {
             ),
         ),
     })
-}
-
-/// Formats a proved distance with four decimals, rounded down.
-pub(crate) fn lower(distance: f64) -> String {
-    let [low, _] = outward([distance, distance], 4);
-    low
 }

@@ -5,5 +5,8 @@ pub(crate) mod decide;
 pub(crate) mod findings;
 mod gradient;
 mod part_of_step;
+pub(crate) mod stop_verdict;
+mod stopped;
+pub(crate) mod stops;
 pub(crate) mod verification;
 pub(crate) mod witness;

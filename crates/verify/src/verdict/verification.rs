@@ -10,6 +10,7 @@ use crate::margin::Margin;
 use crate::scene::scenario::Scene;
 use crate::verdict::clearance::{Clearance, clearances};
 use crate::verdict::decide::{Advice, advice, clears};
+use crate::verdict::stops::MotionStops;
 use crate::verdict::witness::{Approach, Witness};
 
 /// A simulated motion overlaps an obstacle only if it does so by more than the error of the
@@ -43,6 +44,8 @@ pub struct Verification {
     pub closest: Option<Witness>,
     /// What would decide, if the answer is undecided.
     pub advice: Option<Advice>,
+    /// The stops from the samples of the motion, if the scenario has any.
+    pub stops: Option<MotionStops>,
     /// Where the reachable set ends early, if it does.
     pub lost: Option<Lost>,
     /// The reachable set.
@@ -94,7 +97,8 @@ pub fn verify(
             _ => None,
         };
         let case = case.name.clone();
-        Ok(Verification { case, answer, clearances, margins, closest, advice, lost, reach })
+        let stops = None;
+        Ok(Verification { case, answer, clearances, margins, closest, advice, stops, lost, reach })
     };
     cases.map(decide).collect()
 }

@@ -3,12 +3,16 @@
 
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reachtube_reach::Hyperrectangle;
+use reachtube_conform::SuiteReach;
+use reachtube_reach::{Hyperrectangle, StepBounds};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
-use reachtube_verify::{Brakes, Category, Deceleration, Path, Stop};
+use reachtube_verify::{
+    Answer, Body, Brakes, Capsules, Category, Deceleration, Obstacle, Path, Scene, Solid, Stop,
+    StopRule, Verification,
+};
 
-use crate::common::Random;
+use crate::common::{Random, distance, placed};
 
 /// Step of the simulation, s.
 const STEP: f64 = 1e-4;
@@ -235,4 +239,81 @@ fn a_brake_below_the_load_is_not_proved_to_hold() {
     let strong = Brakes { torque: vec![[50.0, 60.0]; 6], ..weak };
     let stop = stop_0(&robot, &strong, &stretched);
     assert!(stop.stands && stop.joints[1].way[1] < 1e-3, "{:?}", stop.joints);
+}
+
+/// A reachable set of two samples about a straight motion.
+fn straight(q: &[f64], qd: &[f64], radius: f64) -> SuiteReach {
+    let end: Vec<f64> = q.iter().zip(qd).map(|(q, qd)| q + 0.004 * qd).collect();
+    let nominal = [q, qd, &end, qd].concat();
+    let shifted = |by: f64| nominal.iter().map(|x| x + by).collect::<Vec<f64>>();
+    let (lower, upper) = (shifted(-radius), shifted(radius));
+    let side = |i: usize| {
+        let all = [lower[i], lower[i + 12], upper[i], upper[i + 12]].map(Interval::point);
+        all.into_iter().reduce(Interval::hull).unwrap()
+    };
+    let tube = StepBounds::from_boxes(12, (0..12).map(side).collect());
+    SuiteReach {
+        suite: "S".into(),
+        run: None,
+        times: vec![0.0, 0.004],
+        nominal,
+        lower,
+        upper,
+        tube,
+        dimension: 12,
+        lost: None,
+    }
+}
+
+#[test]
+fn simulated_stops_stay_as_far_from_an_obstacle_as_is_proved() {
+    let robot = Robot::lwa4p();
+    let capsules = Capsules::embedded(&robot).unwrap();
+    let body = Body::new(&robot, &capsules);
+    for seed in 0..3 {
+        let mut random = Random::new(seed);
+        let (q, qd) = state(&mut random);
+        let tip = placed(&robot, capsules.as_slice().last().unwrap(), &q)[1];
+        let ahead: Vec<f64> = q.iter().zip(&qd).map(|(q, qd)| q + 0.2 * qd).collect();
+        let to = placed(&robot, capsules.as_slice().last().unwrap(), &ahead)[1];
+        // The arm moves towards it.
+        let centre = to + 0.15 * (to - tip).normalize();
+        let solid = Solid::Capsule { from: centre.into(), to: centre.into(), radius: 0.01 };
+        let obstacle = Obstacle { name: "ball".into(), solid, speed: 0.0, joints: None };
+        let scene = Scene { obstacles: vec![obstacle], clearance: 0.0, refine: 1 };
+        let rule = StopRule { brakes: brakes(), category: Category::Zero, distance: None };
+        let before = Verification {
+            case: "S".into(),
+            answer: Answer::Safe,
+            clearances: vec![],
+            margins: vec![],
+            closest: None,
+            advice: None,
+            stops: None,
+            lost: None,
+            reach: straight(&q, &qd, 1e-3),
+        };
+        let after = before.with_stops(&robot, (&body, &scene), &rule);
+        let stops = after.stops.unwrap();
+        assert_eq!((stops.samples, stops.proved, stops.skipped), (2, 2, 0));
+        for _ in 0..6 {
+            let near = |x: &f64, random: &mut Random| x + 1e-3 * random.signed();
+            let start: Vec<f64> = q.iter().map(|x| near(x, &mut random)).collect();
+            let speed = qd.iter().map(|x| near(x, &mut random)).collect();
+            let torque = brakes().torque.iter().map(|[least, _]| *least).collect();
+            let case = Case { q: start.clone(), qd: speed, torque, delay: 0.03, drive: Vec::new() };
+            let way = simulate(&robot, &case).way;
+            let end: Vec<f64> = start.iter().zip(&way).map(|(q, way)| q + way).collect();
+            for capsule in capsules.as_slice() {
+                let name = body.joint_name(capsule.joint);
+                let proved = stops.clearances.iter().find(|pair| pair.link == name).unwrap();
+                let [first, last] = [&start, &end].map(|q| placed(&robot, capsule, q));
+                let found = distance(centre, last) - capsule.radius - 0.01;
+                assert!(found >= proved.distance - 1e-5, "{seed} {name} {found} {proved:?}");
+                let moved = (last[0] - first[0]).norm().max((last[1] - first[1]).norm());
+                let bound = stops.trigger.iter().find(|link| link.link == name).unwrap();
+                assert!(moved <= bound.way + 1e-6, "{seed} {name} {moved} {bound:?}");
+            }
+        }
+    }
 }

@@ -1,0 +1,67 @@
+//! The verdict about a motion whose stops decide, as a sentence.
+
+use reachtube_scalar::number::outward;
+
+use crate::verdict::verification::{Answer, Verification};
+
+/// Returns the verdict about a motion as a sentence if its stops decide: always if a stop is
+/// triggered at a distance, and else if they come closer than the motion without a stop.
+pub(crate) fn stop_verdict(worst: &Verification, keep: &str) -> Option<String> {
+    let stops = worst.stops.as_ref()?;
+    let closest = stops.clearances.first();
+    let motion = worst.clearances.first();
+    let decides = match (closest, motion) {
+        _ if stops.triggered_at.is_some() => true,
+        (Some(stop), Some(motion)) => stop.distance <= motion.distance,
+        _ => stops.samples == 0,
+    };
+    if worst.answer == Answer::Unsafe || !decides && worst.answer != Answer::Safe {
+        return None;
+    }
+    let case = &worst.case;
+    let category = stops.category;
+    if stops.samples == 0 {
+        return Some(format!(
+            "undecided: no stop of category {category} ends before the motion does ({case})."
+        ));
+    }
+    let when = match stops.triggered_at {
+        Some(distance) => format!("that is triggered at {distance} m"),
+        None => "from any sample".into(),
+    };
+    let Some(stop) = closest else { return Some("safe: no obstacle concerns a link.".into()) };
+    let (link, obstacle, from) = (&stop.link, &stop.obstacle, stop.from);
+    if worst.answer != Answer::Safe {
+        let why = if stop.distance == f64::NEG_INFINITY {
+            "no standstill is proved".into()
+        } else {
+            format!("no distance{keep} is proved between the link of {link} and `{obstacle}`")
+        };
+        return Some(format!(
+            "undecided: after a stop of category {category} at {from:.3} s, {why} ({case})."
+        ));
+    }
+    let closest = match motion {
+        Some(motion) if !decides => format!(
+            "{} m, of the link of {} from `{}` at {:.3} s without a stop",
+            lower(motion.distance),
+            motion.link,
+            motion.obstacle,
+            motion.time
+        ),
+        _ => format!(
+            "{} m, of the link of {link} from `{obstacle}` after a stop at {from:.3} s",
+            lower(stop.distance)
+        ),
+    };
+    Some(format!(
+        "safe: up to a stop of category {category} {when} and until standstill, each link \
+         stays{keep} clear; the smallest proved distance is {closest} ({case})."
+    ))
+}
+
+/// Formats a proved distance with four decimals, rounded down.
+pub(crate) fn lower(distance: f64) -> String {
+    let [low, _] = outward([distance, distance], 4);
+    low
+}
