@@ -27,7 +27,15 @@ from ._reachtube import version as _version
 from ._recordings import Recordings, Run
 from ._robot import Robot
 from ._stop import AnnexRow, RecordedStop, StopStudy, WorstStop, stop
-from ._verify import Clearance, Margin, MotionVerdict, Verification, Witness, verify
+from ._verify import (
+    Clearance,
+    Margin,
+    MotionVerdict,
+    StopTrigger,
+    Verification,
+    Witness,
+    verify,
+)
 from .errors import (
     Defect,
     DefectsError,
@@ -73,6 +81,7 @@ __all__ = [
     "Run",
     "SettingError",
     "StopStudy",
+    "StopTrigger",
     "Verification",
     "Witness",
     "WorstStop",

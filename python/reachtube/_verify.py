@@ -58,6 +58,22 @@ class Witness:
 
 
 @dataclass(frozen=True)
+class StopTrigger:
+    """How far a walking person must be from a link when a stop of the motion is triggered."""
+
+    link: str
+    """The joint that moves the link."""
+    distance: float
+    """The distance, m; infinite if a standstill is not proved."""
+    way: float
+    """The way of the link until standstill, m."""
+    time: float
+    """The time from the sample before the stop until standstill, s."""
+    stop_at: float
+    """The time of the sample at which that stop begins, s."""
+
+
+@dataclass(frozen=True)
 class MotionVerdict:
     """The verdict about a motion."""
 
@@ -71,6 +87,8 @@ class MotionVerdict:
     """The margin of each link."""
     closest: Witness | None
     """The simulated motion that comes closest; ``None`` if the answer is safe."""
+    stops: tuple[StopTrigger, ...] | None
+    """The trigger distance of each link; ``None`` if the scenario has no ``[stop]``."""
 
     @classmethod
     def _of(cls, row: dict[str, Any]) -> MotionVerdict:
@@ -79,13 +97,18 @@ class MotionVerdict:
             distance = -infinite(None) if pair["distance"] is None else float(pair["distance"])
             return Clearance(**{**pair, "distance": distance})
 
-        found = row["closest"]
+        def trigger(one: dict[str, Any]) -> StopTrigger:
+            bounds = (infinite(one[key]) for key in ("distance", "way", "time"))
+            return StopTrigger(one["link"], *bounds, stop_at=one["from"])
+
+        found, stops = row["closest"], row["stops"]
         return cls(
             row["case"],
             row["answer"],
             tuple(clearance(pair) for pair in row["clearances"]),
             tuple(Margin(**{**one, "margin": infinite(one["margin"])}) for one in row["margins"]),
             None if found is None else Witness(**{**found, "start": tuple(found["start"])}),
+            None if stops is None else tuple(trigger(one) for one in stops["trigger"]),
         )
 
 

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use reachtube::export::armour::{Armour, ArmourSettings};
 use reachtube::number::interval;
+use reachtube::verify::Capsules;
 use reachtube::write;
 use serde_json::json;
 
 use super::arguments::{Arguments, load_robot, write_all};
-use crate::commands::verify::capsules;
 use crate::error::Result;
 use crate::outcome::Outcome;
 use crate::output;
@@ -17,7 +17,7 @@ use crate::output;
 pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&args.out.join("RobotInfo.h"))?;
     let robot = load_robot(args)?;
-    let capsules = capsules(args.capsules.as_deref(), &robot)?;
+    let capsules = Capsules::open(args.capsules.as_deref(), &robot)?;
     let settings = ArmourSettings {
         uncertainty: args.uncertainty.unwrap_or_default(),
         torque_limits: args.torque_limits.clone(),
