@@ -25,5 +25,5 @@ fn three_commands_lead_to_a_verified_stop_with_its_page() {
     assert!(lab.read("stops/stop.html").contains("Annex B"));
     let safe = run(verify, "").exits(0).stdout;
     assert!(safe.starts_with("safe: "), "{safe}");
-    assert_eq!(lab.names("cell"), ["M1a.svg"]);
+    assert_eq!(lab.names("cell"), ["M1a.svg", "verify.html"]);
 }
