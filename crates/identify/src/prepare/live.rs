@@ -17,7 +17,7 @@ const SLOPE: [f64; 5] = [1.0 / 12.0, -8.0 / 12.0, 0.0, 8.0 / 12.0, -1.0 / 12.0];
 ///
 /// The low-pass weighs samples before and after each one, so that an answer comes late by twice
 /// three periods of the cut-off: once for the signals, and once more for what is taken off the
-/// torques, which is computed from them. It is cut off there, where [`prepare`](fn@crate::prepare)
+/// torques, which is computed from them. It is cut off there, where `prepare`
 /// weighs all samples; the difference is below a thousandth of a step. Nothing is allocated after
 /// the preparation was made.
 #[derive(Debug, Clone)]
