@@ -98,8 +98,8 @@ class MotionVerdict:
             return Clearance(**{**pair, "distance": distance})
 
         def trigger(one: dict[str, Any]) -> StopTrigger:
-            bounds = (infinite(one[key]) for key in ("distance", "way", "time"))
-            return StopTrigger(one["link"], *bounds, stop_at=one["from"])
+            distance, way, time = (infinite(one[key]) for key in ("distance", "way", "time"))
+            return StopTrigger(one["link"], distance, way, time, float(one["from"]))
 
         found, stops = row["closest"], row["stops"]
         return cls(

@@ -105,6 +105,15 @@ def test_verdicts_are_typed(model: rt.Model, robot: rt.Robot, tmp_path: Path) ->
     (tmp_path / "cell.toml").write_text(text)
     assert rt.verify(tmp_path / "cell.toml") == answer
     assert rt.verify({**scenario(-2.0), "model": model, "data": runs(robot, count=1)}) == answer
+    assert motion.stops is None
+    brakes = f"torque = {BRAKES['torque']}\ndelay = [0.01, 0.03]\n"
+    (tmp_path / "brakes.toml").write_text(brakes)
+    stopped = rt.verify({**scenario(-2.0), "stop": {"brakes": tmp_path / "brakes.toml"}})
+    [motion] = stopped.motions
+    assert stopped and motion.stops is not None
+    wrist = motion.stops[-1]
+    assert wrist.link == "joint6" and 0 < wrist.way < 0.5 and wrist.stop_at <= 0.1
+    assert wrist.distance == pytest.approx(wrist.way + 1.6 * wrist.time)
     with pytest.raises(rt.SettingError, match="nothing to stay clear of"):
         rt.verify({**scenario(0.0), "obstacle": []})
 
