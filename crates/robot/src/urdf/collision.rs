@@ -39,10 +39,12 @@ pub enum Shape {
         /// Radius \[m\].
         radius: f64,
     },
-    /// A mesh, which is not read.
+    /// A mesh; its file is not opened here.
     Mesh {
         /// The file, as the URDF writes it.
         file: String,
+        /// Factors of the file's coordinates x, y and z; 1 where the URDF has none.
+        scale: [f64; 3],
     },
 }
 
@@ -104,7 +106,8 @@ impl<'a> UrdfTree<'a> {
     fn shape(&self, collision: Node<'a, 'a>) -> Result<Shape, RobotError> {
         let geometry = self.child(collision, "geometry")?;
         if let Some(mesh) = element(geometry, "mesh") {
-            return Ok(Shape::Mesh { file: self.attribute(mesh, "filename")?.into() });
+            let file = self.attribute(mesh, "filename")?.into();
+            return Ok(Shape::Mesh { file, scale: self.scale(mesh)? });
         }
         if let Some(sphere) = element(geometry, "sphere") {
             return Ok(Shape::Sphere { radius: self.size(sphere, "radius")? });
@@ -119,6 +122,16 @@ impl<'a> UrdfTree<'a> {
         let size =
             size.ok_or_else(|| self.error(sides, problem(), "write three lengths above 0, in m"))?;
         Ok(Shape::Box { size })
+    }
+
+    /// Returns the factors of a mesh's coordinates.
+    fn scale(&self, mesh: Node<'a, 'a>) -> Result<[f64; 3], RobotError> {
+        let scale = self.triple(mesh, "scale")?.unwrap_or([1.0; 3]);
+        if scale.iter().all(|factor| *factor != 0.0) {
+            return Ok(scale);
+        }
+        let remedy = "write three factors, as in scale=\"0.001 0.001 0.001\"";
+        Err(self.error(mesh, "scale has a factor of 0".into(), remedy))
     }
 
     /// Returns a length above 0.

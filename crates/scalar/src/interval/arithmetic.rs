@@ -70,6 +70,12 @@ impl Mul for Interval {
 impl Interval {
     /// Encloses the product where an end is zero or infinite, or where a product may underflow.
     fn mul_with_zero_or_infinity(self, rhs: Interval) -> Interval {
+        // Exact zeros abound in the geometry of robots; 0 · ∞ is left to the general case.
+        let zero = |x: Interval| x.lo == 0.0 && x.hi == 0.0;
+        let finite = |x: Interval| (x.hi - x.lo) < f64::INFINITY;
+        if (zero(self) && finite(rhs)) || (zero(rhs) && finite(self)) {
+            return Interval { lo: 0.0, hi: 0.0 };
+        }
         let pairs = [(self.lo, rhs.lo), (self.lo, rhs.hi), (self.hi, rhs.lo), (self.hi, rhs.hi)];
         let lo = pairs.iter().fold(f64::INFINITY, |m, &(a, b)| m.min(mul_down(a, b)));
         let hi = pairs.iter().fold(f64::NEG_INFINITY, |m, &(a, b)| m.max(mul_up(a, b)));

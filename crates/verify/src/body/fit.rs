@@ -25,7 +25,7 @@ pub(super) fn enclosing_capsule(shape: &CollisionShape) -> Result<Capsule> {
             let along = std::mem::replace(&mut half[axis], 0.0);
             (axis, along, norm_of_bounds(half))
         }
-        Shape::Mesh { file } => {
+        Shape::Mesh { file, .. } => {
             return Err(Error::Mesh { link: shape.link.clone(), mesh: file.clone() });
         }
     };
