@@ -33,10 +33,10 @@ pub(crate) struct Arguments {
     pub robot: String,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Number of random point-to-point motions, 1 or more; each is simulated slowly and fast
+    /// Number of random point-to-point motions, each slow and fast
     #[arg(long, default_value_t = 50, value_name = "COUNT")]
     pub motions: usize,
-    /// Seed of the motions; the same seed gives the same motions
+    /// Seed of the motions
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Orders p of the models, separated by commas, each 1 or more
@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
     /// Highest order at which model 3 is simulated
     #[arg(long, default_value_t = 5, value_name = "P")]
     pub model3_up_to: u32,
-    /// Largest distance of a joint from the expansion point q = 0, rad
+    /// Largest distance of a joint from q = 0, rad
     #[arg(
         long,
         default_value_t = std::f64::consts::FRAC_PI_2,

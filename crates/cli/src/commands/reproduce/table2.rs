@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     /// Folder with runs.csv and the recordings
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
-    /// Test suites to use, separated by commas; * and ? match as in A*,B? [default: all]
+    /// Test suites to use, separated by commas, such as A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
     /// Notions of enclosure, separated by commas: hull, phase-plane, exact
