@@ -31,8 +31,7 @@ Examples:
 
 /// Make a simple model of a robot's forward dynamics
 ///
-/// Liu and Althoff (2018), Sec. IV-B, define the models. --box proves a bound of the model
-/// error, the forward dynamics minus the model.
+/// Liu and Althoff (2018), Sec. IV-B, define the models.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

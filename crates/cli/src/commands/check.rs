@@ -28,8 +28,7 @@ Exit codes: 0 all recordings are proved to lie in the reachable set, at samples,
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Directions in which the recordings must lie in the reachable set [default: as in the model
-    /// file]
+    /// What must lie in the reachable set [default: as in the model file]
     #[arg(long, value_parser = choice::<Notion>(Notion::NAMES))]
     pub notion: Option<Notion>,
 }

@@ -32,13 +32,12 @@ Exit codes: 0 every recording can be used, 2 some are refused.";
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Robot that was recorded, for the units of its joints [default: revolute joints]
+    /// Robot, for the units of its joints [default: revolute joints]
     #[arg(long)]
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Folder with runs.csv and the recordings, or a log or folder of logs: CSV files of any
-    /// header, MCAP and rosbag2
+    /// Folder with runs.csv and the recordings, a log, or a folder of logs
     #[arg(long, value_name = "PATH")]
     pub data: PathBuf,
     #[command(flatten)]

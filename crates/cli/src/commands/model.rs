@@ -49,7 +49,7 @@ pub(crate) struct Arguments {
     /// Meaning of the recorded torques
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
-    /// TOML file with choices, as this command writes it; its paths are relative to its folder
+    /// TOML file with choices, as this command writes it
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     /// Time up to which the model predicts, above 0 s [default: the longest at which no set is

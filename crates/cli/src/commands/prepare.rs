@@ -30,8 +30,7 @@ const TORQUES: Choices = &[
 
 /// Filter recordings, cut them into windows, and write them as test suites
 ///
-/// Sample times are made even, and positions, velocities and torques are filtered forward and
-/// backward, without delay.
+/// Sample times are made even, and signals are filtered without delay.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

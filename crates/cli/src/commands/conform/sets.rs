@@ -29,7 +29,7 @@ pub(crate) struct SetArguments {
         value_parser = choice::<Centre>(CENTRES)
     )]
     pub centre: Centre,
-    /// Directions in which recordings must lie in the reachable set
+    /// What must lie in the reachable set
     #[arg(
         long,
         help_heading = "Sets",

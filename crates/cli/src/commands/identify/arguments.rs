@@ -23,8 +23,7 @@ const TORQUES: Choices =
 
 /// Identify a robot's gravity, friction and inertia from its recordings
 ///
-/// Recordings are CSV files with the columns t, q1..qn, qd1..qdn, tau1..taun, or logs (.mcap, .db3)
-/// with joint states. A folder stands for the CSV files in it.
+/// Recordings are CSV files, folders of them, or logs (.mcap, .db3) with joint states.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

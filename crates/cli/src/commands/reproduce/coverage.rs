@@ -16,9 +16,6 @@ Example:
 Exit codes: 0 every bound holds within three standard errors, 1 one does not, 2 error.";
 
 /// Simulate how often the bounds for the next motion are wrong
-///
-/// Each campaign records 38 random motions of the virtual robot, finds sets for them, and states
-/// bounds of the probability that the next motion leaves them. Further motions give the truth.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

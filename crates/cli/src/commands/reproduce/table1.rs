@@ -22,9 +22,6 @@ Example:
 The paper's trajectories are unpublished, so only the sizes and the order of the errors can agree.";
 
 /// Table I: velocity errors of models 1, 2 and 3 in simulation
-///
-/// The reference is the robot's forward dynamics by Featherstone's articulated-body algorithm,
-/// under the same inputs.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

@@ -30,8 +30,8 @@ Exit codes: 0 every set proved conformant, 1 one is not, 2 error.";
 
 /// Table II: the uncertainty sets of model 1 for the LWA 4P
 ///
-/// Both halves of the table: sets that enclose positions and velocities, and sets that enclose
-/// positions. The sets contain the origin, as the paper's do. Torques are compensated.
+/// Sets that enclose positions and velocities, and sets that enclose positions, from compensated
+/// torques.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -41,7 +41,7 @@ pub(crate) struct Arguments {
     /// Test suites to use, separated by commas, such as A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// Notions of enclosure, separated by commas: hull, phase-plane, exact
+    /// Notions of enclosure, separated by commas
     #[arg(
         long,
         value_name = "NOTION,..",
