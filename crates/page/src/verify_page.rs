@@ -132,6 +132,8 @@ fn capital(text: &str) -> String {
 /// Returns a motion: its static picture, and the elements that the script fills.
 fn shown(worst: &Verification, page: &VerifyPage) -> Markup {
     let pair = closest_pair(worst);
+    // What the worst stop sweeps would hide a witness that is stopped.
+    let is_stopped = worst.closest.as_ref().is_some_and(|found| found.stop.is_some());
     html! {
         p {
             (Text(&worst.case))
@@ -151,13 +153,17 @@ fn shown(worst: &Verification, page: &VerifyPage) -> Markup {
             p {
                 label { input #whole type="checkbox"; " swept over the whole motion " }
                 @if worst.stops.is_some() {
-                    label { input #stopped type="checkbox" checked; " swept over the worst stop " }
+                    label {
+                        input #stopped type="checkbox" checked[!is_stopped];
+                        " swept over the worst stop "
+                    }
                 }
             }
             p.hint {
                 "Blue: the nominal motion. Grey: what contains the links on all motions of the \
-                 model. Orange: the worst stop, at the end of the slider. Brown: obstacles at that \
-                 time; a half-space is drawn as a plane."
+                 model. Orange: the worst stop, at the end of the slider. Red: the closest pair, \
+                 and the closest motion that was found. Brown: obstacles at that time; a \
+                 half-space is drawn as a plane."
             }
         }
         div.wide { (PreEscaped(picture(worst, page.body, page.scene))) }
@@ -221,22 +227,28 @@ fn view<'a>(worst: &'a Verification, page: &VerifyPage<'a>) -> View<'a> {
     };
     let time = found.map(|found| found.time);
     let time = time.or_else(|| Some(worst.clearances.first()?.time)).unwrap_or(0.0);
-    let before = |frames: &[Frame]| frames.iter().rposition(|frame| frame.time <= time);
-    // A witness that is stopped comes closest in the stop.
-    let in_stop = found.and_then(|found| found.stop.as_ref()).and_then(|_| before(&stop));
-    let first = in_stop.map_or_else(|| before(&frames).unwrap_or(0), |k| frames.len() + k);
     let data = |obstacle: &'a Obstacle| ObstacleData {
         name: &obstacle.name,
         solid: &obstacle.solid,
         speed: obstacle.speed,
     };
     View {
-        first,
+        first: first_shown(&frames, &stop, time),
         frames,
         stop,
         obstacles: scene.obstacles.iter().map(data).collect(),
         link: (0..body.capsules().len()).filter(is_link).collect(),
         obstacle: pair.map(|(_, obstacle)| obstacle),
+    }
+}
+
+/// Returns the index of the frame that is shown first: in the stop if the closest motion is stopped
+/// there.
+fn first_shown(frames: &[Frame], stop: &[Frame], time: f64) -> usize {
+    let before = |frames: &[Frame]| frames.iter().rposition(|frame| frame.time <= time);
+    match before(stop) {
+        Some(k) if !stop[k].closest.is_empty() => frames.len() + k,
+        _ => before(frames).unwrap_or(0),
     }
 }
 

@@ -165,7 +165,7 @@ impl Verified {
     }
 
     /// Returns a simulated motion as CSV, `t,q1,..,qd1,..,tau1,..`, whose torque is the model's
-    /// input, and that of the drives during a stop.
+    /// input, and during a stop the torque of the drives.
     fn csv(&self, found: &Witness) -> String {
         let n = self.body.joint_count();
         let names = |kind: &str| (1..=n).map(|i| format!(",{kind}{i}")).collect::<String>();

@@ -13,9 +13,9 @@ const ROUNDS: usize = 100;
 /// A segment and its radius.
 pub(super) type Fitted = ([f64; 3], [f64; 3], f64);
 
-/// Returns ends and radius of a capsule that contains points: of those along the principal axes of
-/// the points, the one with the smallest volume. The radius is about the smallest for its axis, and
-/// the segment the shortest for its radius.
+/// Returns ends and radius of a capsule that contains points. It has the smallest volume of three
+/// capsules along the principal axes of the points. The radius is about the smallest for its axis,
+/// and the segment the shortest for its radius.
 ///
 /// # Guarantee
 ///

@@ -8,8 +8,8 @@ use crate::scene::scenario::Scene;
 use crate::stop::category::Category;
 use crate::stop::rule::StopRule;
 use crate::verdict::clearance::{Clearance, clearances};
+use crate::verdict::question::Question;
 use crate::verdict::stops::MotionStops;
-use crate::verdict::verification::Question;
 
 /// Numbers of parts of a step that are tried.
 const PARTS: [u32; 2] = [64, 512];

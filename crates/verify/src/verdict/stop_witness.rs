@@ -11,7 +11,7 @@ use crate::verdict::clearance::Clearance;
 use crate::verdict::gradient::Motion;
 use crate::verdict::witness::{Approach, StopOfWitness, Witness};
 
-/// Number of pairs of a link and an obstacle that are tried, those with the smallest distance.
+/// Number of pairs of a link and an obstacle that are tried, the closest first.
 const PAIRS: usize = 3;
 
 /// How often the worst disturbance is sought anew, along the motion that was found before.

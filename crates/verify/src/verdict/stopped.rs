@@ -10,9 +10,10 @@ use crate::stop::along::Motion;
 use crate::stop::path::Path;
 use crate::stop::rule::StopRule;
 use crate::verdict::decide::{Advice, stop_advice};
+use crate::verdict::question::Question;
 use crate::verdict::stop_witness::{StopSearch, TOUCH_OF_STOP};
 use crate::verdict::stops::{MotionStops, stop_from};
-use crate::verdict::verification::{Answer, Question, Verification};
+use crate::verdict::verification::{Answer, Verification};
 use crate::verdict::witness::Approach;
 
 impl Verification {

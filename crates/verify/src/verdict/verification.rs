@@ -12,6 +12,7 @@ use crate::scene::scenario::Scene;
 use crate::stop::rule::StopRule;
 use crate::verdict::clearance::{Clearance, clearances};
 use crate::verdict::decide::{Advice, advice, clears};
+use crate::verdict::question::Question;
 use crate::verdict::stops::MotionStops;
 use crate::verdict::witness::{Approach, Witness};
 
@@ -53,14 +54,6 @@ pub struct Verification {
     /// The reachable set.
     #[serde(skip)]
     pub reach: SuiteReach,
-}
-
-/// A question about the motions of a model.
-pub(super) struct Question<'a> {
-    pub problem: &'a Problem,
-    pub tube: &'a Tube,
-    pub body: &'a Body,
-    pub scene: &'a Scene,
 }
 
 /// Decides for each motion of a problem whether the links stay clear under the sets of `tube`; with
