@@ -54,6 +54,10 @@ pub(crate) struct SetArguments {
         value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
     )]
     pub initial_limit: InitialLimit,
+    /// Widen U by the dry friction that is possible where joints may come to rest. The sets then
+    /// cover other motions under the same motor torque, whose joints stick or slip at other times
+    #[arg(long, hide_short_help = true, help_heading = "Sets")]
+    pub stiction: bool,
     /// Weights of the states in the cost: unit (1 for each state); spread (1 over the state's
     /// largest deviation in the recordings); or 2 or 2n numbers between 1e-9 and 1e9, positions
     /// first
@@ -176,6 +180,7 @@ impl SetArguments {
             notion: self.notion,
             states: self.states,
             initial_limit: self.initial_limit,
+            stiction: self.stiction,
             weights: match self.weights.as_str() {
                 "unit" => Weights::Unit,
                 "spread" => Weights::Spread,
