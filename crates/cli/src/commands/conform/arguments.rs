@@ -146,6 +146,9 @@ const GROUPS: Choices = &[
     ("viscous", "viscous friction"),
     ("cubic", "quadratic and cubic viscous friction"),
     ("coulomb", "Coulomb friction, by quadrant where the quadrants differ"),
-    ("warm-up", "viscous friction that changes with the order of a suite's runs"),
+    (
+        "warm-up",
+        "friction that changes with recorded temperatures, else with the order of a suite's runs",
+    ),
     ("payload", "a point mass at the last link's frame"),
 ];
