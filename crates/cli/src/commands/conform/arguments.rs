@@ -139,6 +139,6 @@ const GROUPS: Choices = &[
     ("viscous", "viscous friction"),
     ("cubic", "quadratic and cubic viscous friction"),
     ("coulomb", "Coulomb friction"),
-    ("warm-up", "viscous friction that changes from run to run"),
+    ("warm-up", "friction that changes with temperatures, or from run to run"),
     ("payload", "a point mass at the last link's frame"),
 ];

@@ -53,6 +53,10 @@ pub(crate) struct SetArguments {
         value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
     )]
     pub initial_limit: InitialLimit,
+    /// Widen U by the dry friction that is possible near standstill, for motions whose joints stick
+    /// or slip at other times
+    #[arg(long, hide_short_help = true, help_heading = "Sets")]
+    pub stiction: bool,
     /// Weights of the states in the cost: 1, 1 over the largest deviation, or 2 or 2n numbers
     /// between 1e-9 and 1e9, positions first
     #[arg(
@@ -159,6 +163,7 @@ impl SetArguments {
             notion: self.notion,
             states: self.states,
             initial_limit: self.initial_limit,
+            stiction: self.stiction,
             weights: match self.weights.as_str() {
                 "unit" => Weights::Unit,
                 "spread" => Weights::Spread,
