@@ -13,7 +13,7 @@ use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::findings::implausible;
+use crate::findings::{contradiction, implausible};
 use crate::held_out::Recording;
 use crate::plausible::{Explained, contradictions, unmeasured};
 use crate::trial::Trial;
@@ -102,7 +102,9 @@ impl Evidence<'_> {
             // Compensated torques are the input of the robot that is described.
             Some((nominal, error)) if given == Some(false) || error < GOOD || is_input => {
                 let left = percent(error);
-                let reason = format!("the description leaves {left} of the torque unexplained");
+                let why = if given.is_some() { "given; " } else { "" };
+                let reason =
+                    format!("{why}the description leaves {left} of the torque unexplained");
                 Ok(Nominal { reason, ..nominal })
             }
             Some((nominal, error)) => self.better(described, nominal, error),
@@ -131,7 +133,10 @@ impl Evidence<'_> {
                     "the description leaves {left} of the torque unexplained, but the robot could \
                      not be identified: {failure}"
                 );
-                return Ok(Nominal { reason, ..nominal });
+                // A robot that needs no torque would explain as much.
+                let is_useless = error >= 1.0;
+                let findings = is_useless.then(|| contradiction(&reason)).into_iter().collect();
+                return Ok(Nominal { reason, findings, ..nominal });
             }
         };
         let after = self.unexplained(&identified)?;

@@ -141,7 +141,7 @@ pub(crate) struct Arguments {
     pub report: Option<PathBuf>,
 }
 
-const GROUPS: Choices = &[
+pub(crate) const GROUPS: Choices = &[
     ("inertia", "motor inertia of each joint and density of each link"),
     ("viscous", "viscous friction"),
     ("cubic", "quadratic and cubic viscous friction"),
