@@ -133,9 +133,7 @@ impl Evidence<'_> {
                     "the description leaves {left} of the torque unexplained, but the robot could \
                      not be identified: {failure}"
                 );
-                // A robot that needs no torque would explain as much.
-                let is_useless = error >= 1.0;
-                let findings = is_useless.then(|| contradiction(&reason)).into_iter().collect();
+                let findings = unexplained_by_any(error).into_iter().collect();
                 return Ok(Nominal { reason, findings, ..nominal });
             }
         };
@@ -264,6 +262,18 @@ impl Evidence<'_> {
         let parts = errors.iter().enumerate().map(|(joint, error)| error / torque(joint).max(1e-9));
         Ok(parts.sum::<f64>() / errors.len() as f64)
     }
+}
+
+/// Makes the finding that a description, which leaves a part of the torque unexplained, explains no
+/// more than a robot that needs no torque, and that no other was found.
+fn unexplained_by_any(part: f64) -> Option<Finding> {
+    let left = percent(part);
+    let text = format!(
+        "the torques are not what this robot needs: its description leaves {left} of them \
+         unexplained, and no robot with these joints was found that explains them; check their \
+         kind, unit and signs, and whether they were measured"
+    );
+    (part >= 1.0).then(|| contradiction(&text))
 }
 
 /// Filters recordings and turns their torques into the input of a robot's model. Torques that are

@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// Model file; the model must be linear
     #[arg(long, value_name = "FILE")]
     pub model: PathBuf,
-    /// Time between samples, s [default: the median of the first 16 times between samples]
+    /// Time between samples, s [default: the median of the first 16]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub step: Option<f64>,
     /// Length of a window, s [default: as long as the model's recordings were used]
@@ -35,10 +35,10 @@ pub(crate) struct Arguments {
     /// Longest time between two samples, s [default: 1.9 times --step]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
-    /// Take velocities from the filtered positions, for a model whose logs have none worth using
+    /// Take velocities from the filtered positions
     #[arg(long)]
     pub differentiate: bool,
-    /// Print how much of the sets is used, and their drift, each time this many seconds have passed
+    /// Print how much of the sets is used, and their drift, each time these seconds have passed
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub gauge_every: Option<f64>,
 }
