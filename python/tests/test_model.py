@@ -50,12 +50,15 @@ def logs(arm: rt.Robot) -> list[rt.Run]:
 
 
 @pytest.fixture(scope="module")
-def built(
-    arm: rt.Robot, logs: list[rt.Run], tmp_path_factory: pytest.TempPathFactory
-) -> rt.BuiltModel:
+def choices(tmp_path_factory: pytest.TempPathFactory) -> Path:
     # Three motions give sets so small that the fourth needs three times the set of a joint.
-    choices = tmp_path_factory.mktemp("choices") / "choices.toml"
-    choices.write_text("largest-growth = 4.0\nlargest-outside = 0.2\n")
+    file = tmp_path_factory.mktemp("choices") / "choices.toml"
+    file.write_text("largest-growth = 4.0\nlargest-outside = 0.2\n")
+    return file
+
+
+@pytest.fixture(scope="module")
+def built(arm: rt.Robot, logs: list[rt.Run], choices: Path) -> rt.BuiltModel:
     return rt.model(arm, logs, torque="motor", horizon=0.1, settings=choices)
 
 
@@ -151,6 +154,29 @@ def test_paths_give_the_files_of_the_command(
     assert json.loads(json.dumps(again.to_dict()))["horizon"] == 0.1
     with pytest.raises(rt.ReachtubeError, match="as long as the horizon of 9 s"):
         rt.model(robot, settings=out / "choices.toml", horizon=9.0)
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_parquet_files_give_the_sets_of_their_runs(
+    built: rt.BuiltModel, arm: rt.Robot, logs: list[rt.Run], choices: Path, tmp_path: Path
+) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    read = []
+    for run in logs:
+        file = tmp_path / f"{run.name}.parquet"
+        parquet.write_table(pyarrow.Table.from_pandas(run.to_pandas()), file)
+        read.append(rt.io.parquet(file, motion=run.motion))
+    found = rt.model(arm, read, torque="motor", horizon=0.1, settings=choices)
+    for own, other in zip(
+        [found.model.initial_set, found.model.input_set],
+        [built.model.initial_set, built.model.input_set],
+        strict=True,
+    ):
+        np.testing.assert_array_equal(own.radius, other.radius)
+        np.testing.assert_array_equal(own.centre, other.centre)
+    assert found.held_out == built.held_out and found.joints == built.joints
 
 
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")

@@ -134,7 +134,7 @@ pub(crate) struct Arguments {
     pub report: Option<PathBuf>,
 }
 
-const GROUPS: Choices = &[
+pub(crate) const GROUPS: Choices = &[
     ("inertia", "motor inertias and densities of links"),
     ("viscous", "viscous friction"),
     ("cubic", "quadratic and cubic viscous friction"),
