@@ -103,16 +103,16 @@ def recordings(folder: Path) -> list[rt.fleet.Recording]:
     return rows
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def manifest(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("fleet")
     rt.fleet.write_manifest(folder / "manifest.parquet", recordings(folder))
     return folder / "manifest.parquet"
 
 
-@pytest.fixture(scope="module")
-def client() -> Iterator[Any]:
-    """Two workers, each a process of its own."""
+@pytest.fixture(scope="session")
+def workers() -> Iterator[Any]:
+    """One cluster for all tests: two workers, each a process of its own."""
     distributed = pytest.importorskip("distributed")
     with (
         distributed.LocalCluster(
@@ -121,6 +121,13 @@ def client() -> Iterator[Any]:
         distributed.Client(cluster) as found,
     ):
         yield found
+
+
+@pytest.fixture
+def client(workers: Any) -> Any:
+    """The cluster, after it has replaced the workers that another test killed."""
+    workers.wait_for_workers(2)
+    return workers
 
 
 def tasks_end_but(other: Any, client: Any) -> bool:

@@ -147,28 +147,23 @@ def test_a_question_that_waits_ends(few: Path) -> None:
         assert other.result()
 
 
-def test_a_worker_that_held_points_is_killed(few: Path) -> None:
+def test_a_worker_that_held_points_is_killed(
+    few: Path, client: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     alone = fleet.conform(rt.Robot.lwa4p(), few, **of_points("exact"))
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, processes=True
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
-        asked: list[int] = []
-        ask = _points.Points.ask
+    asked: list[int] = []
+    ask = _points.Points.ask
 
-        def kill_in_the_fourth_round(self: Any, question: bytes) -> bytes:
-            asked.append(len(question))
-            if len(asked) == 4:
-                os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
-            return ask(self, question)
+    def kill_in_the_fourth_round(self: Any, question: bytes) -> bytes:
+        asked.append(len(question))
+        if len(asked) == 4:
+            os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
+        return ask(self, question)
 
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(_points.Points, "ask", kill_in_the_fourth_round)
-            found = fleet.conform(
-                rt.Robot.lwa4p(), few, client=client, runs_per_task=4, **of_points("exact")
-            )
+    monkeypatch.setattr(_points.Points, "ask", kill_in_the_fourth_round)
+    found = fleet.conform(
+        rt.Robot.lwa4p(), few, client=client, runs_per_task=4, **of_points("exact")
+    )
     assert len(asked) > 4 and found == alone
 
 

@@ -12,20 +12,16 @@ use crate::option_values::{Choices, choice, seconds, trimmed};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
 pub(crate) struct DataArguments {
-    /// Folder with runs.csv and the recordings.
-    ///
-    /// For a model that `model` made, logs like its own.
+    /// Folder with runs.csv and the recordings, or logs for a model that `model` made
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
-    /// Test suites to use, separated by commas; * and ? match as in A*,B? [default: all]
+    /// Test suites to use, separated by commas, such as A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// Meaning of the recorded torques, columns tau1 to taun in N m.
-    ///
-    /// A model file has the meaning of its own.
+    /// Meaning of the recorded torques; a model file has its own
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
-    /// Use only samples up to this time after the first sample, above 0 s [default: all]
+    /// Time after the first sample up to which samples are used, above 0 s [default: all]
     #[arg(long, hide_short_help = true)]
     #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub until: Option<f64>,
@@ -37,9 +33,9 @@ pub(crate) struct DataArguments {
 }
 
 pub(crate) const TORQUES: Choices = &[
-    ("compensated", "the model's input u: gravity and Coulomb friction are already subtracted"),
-    ("motor", "motor torque at the output side of the gear"),
-    ("link", "link-side torque, from a joint torque sensor"),
+    ("compensated", "the input u, without gravity and Coulomb friction"),
+    ("motor", "at the output side of the gear"),
+    ("link", "from a joint torque sensor"),
 ];
 
 // Options that name a model and the recordings to compare it with.

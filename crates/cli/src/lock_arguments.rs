@@ -10,9 +10,8 @@ use crate::output;
 // The option that holds joints of a robot file at positions.
 #[derive(Debug, Args)]
 pub(crate) struct LockArguments {
-    /// Hold a joint of the robot at a position, in rad, or in m for a prismatic joint; joints that
-    /// mimic it follow, and the links that they carry become part of the link before them. Repeat
-    /// the option for more joints
+    /// Hold a joint at a position, in rad or m, with the joints that mimic it; repeat the option
+    /// for more joints
     #[arg(long, hide_short_help = true, value_name = "JOINT=VALUE", help_heading = "Model")]
     pub lock: Vec<Lock>,
 }

@@ -11,10 +11,8 @@ use crate::option_values::{Choices, explained};
 use crate::output;
 
 /// Which times samples of logs have.
-pub(crate) const TIMES: Choices = &[
-    ("header", "the stamps in the headers of the messages"),
-    ("log", "the times at which the log received the messages"),
-];
+pub(crate) const TIMES: Choices =
+    &[("header", "stamps in the messages"), ("log", "times of receipt")];
 
 // Options about logs whose names and topics do not tell.
 #[derive(Debug, Args)]
@@ -30,8 +28,8 @@ pub(crate) struct LogArguments {
     /// Names of the joints in MCAP and rosbag2, in the robot's order [default: the robot's names]
     #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
-    /// Topic in MCAP and rosbag2 that marks runs while it is not empty, true or not 0 [default:
-    /// each log is one recording]
+    /// Topic that marks runs while it is not empty, true or not 0 [default: each log is one
+    /// recording]
     #[arg(long, hide_short_help = true, value_name = "NAME")]
     pub marker: Option<String>,
     /// Times of the samples in MCAP and rosbag2 [default: header]

@@ -8,23 +8,23 @@ pub(crate) type Choices = &'static [(&'static str, &'static str)];
 
 /// How the disturbance may change in time.
 pub(crate) const DISTURBANCES: Choices = &[
-    ("constant", "constant over the whole recording, as in the paper"),
+    ("constant", "constant over the recording, as in the paper"),
     ("sample", "constant over each sample"),
     ("measurable", "any measurable function of time"),
 ];
 
 /// How far X0 may reach, as `--initial-limit` names it.
 pub(crate) const INITIAL_LIMITS: Choices = &[
-    ("none", "as far as makes the sets cheapest"),
-    ("positions", "positions no further than the recorded starts"),
-    ("states", "positions and velocities no further than the recorded starts"),
+    ("none", "no limit"),
+    ("positions", "positions up to the recorded starts"),
+    ("states", "velocities too"),
 ];
 
 /// The models of the paper (Sec. IV-B), as `--paper-model` names them.
 pub(crate) const MODELS: Choices = &[
-    ("1", "M(q_a)^-1 (u - tau_v(qd)): constant mass matrix and viscous friction, eq. (13)"),
-    ("2", "also Coriolis terms, polynomial in sin q and cos q, eqs. (14), (15)"),
-    ("3", "Taylor polynomial of the whole forward dynamics, eq. (16)"),
+    ("1", "constant mass matrix and viscous friction, eq. (13)"),
+    ("2", "also Coriolis terms, eqs. (14), (15)"),
+    ("3", "the whole forward dynamics, eq. (16)"),
 ];
 
 /// Parses a name and removes the space around it.

@@ -11,9 +11,9 @@ const WIDTH: usize = 100;
 const OPENING: &str = "\
 # Command reference
 
-This page is made from the command's own definitions by `reachtube man --markdown`; a test compares
-the two. [Commands](commands.md) describes what all commands have in common: output, JSON, files
-that exist, settings files and limits.
+`reachtube man --markdown` makes this page from the command's own definitions; a test compares the
+two. `reachtube COMMAND --help-all` has examples and remarks too. [Commands](commands.md) describes
+what all commands have in common.
 
 The exit code of every command is 0 for done, 1 for not conformant and 2 for an error. Where a
 command means something else by them, its section says so.
@@ -133,8 +133,7 @@ fn section(page: &mut String, command: &Command, parent: &str, shared: &[Shared]
     let _ = writeln!(page, "{}", usage(&name, command));
     options(page, command, shared);
     if let Some(help) = command.get_after_help() {
-        page.push('\n');
-        page.push_str(&after(&help.to_string()));
+        exit_codes(page, &help.to_string());
     }
 }
 
@@ -225,23 +224,13 @@ fn values(arg: &Arg) -> String {
     names.join(" ") + if more { "..." } else { "" }
 }
 
-/// Returns the text after the options: indented lines become code, others paragraphs.
-fn after(text: &str) -> String {
-    let mut page = String::new();
-    let lines: Vec<&str> = text.lines().collect();
-    let is_code = |line: &str| line.starts_with("  ");
-    for block in lines.chunk_by(|a, b| is_code(a) == is_code(b) && !a.is_empty() && !b.is_empty()) {
-        if block[0].is_empty() {
-            continue;
-        }
-        if is_code(block[0]) {
-            block.iter().for_each(|line| page += &format!("  {line}\n"));
-        } else {
-            page.push_str(&wrap(&escape(&block.join(" ")), "", ""));
-        }
-        page.push('\n');
+/// Appends the exit codes of the text after the options. `--help-all` has the rest: examples and
+/// remarks.
+fn exit_codes(page: &mut String, help: &str) {
+    for block in help.split("\n\n").filter(|block| block.starts_with("Exit codes")) {
+        leave_a_blank_line(page);
+        page.push_str(&wrap(&escape(&joined(block)), "", ""));
     }
-    page.trim_end().to_string() + "\n"
 }
 
 /// Ends the page with one blank line.
@@ -318,7 +307,7 @@ fn wrap(text: &str, first: &str, next: &str) -> String {
 mod tests {
     use clap::{Arg, Command};
 
-    use super::{after, escape, markdown, sentence, wrap};
+    use super::{escape, exit_codes, markdown, sentence, wrap};
 
     #[test]
     fn an_option_of_three_commands_is_printed_once() {
@@ -340,9 +329,9 @@ mod tests {
         assert_eq!(sentence("Positions [default: 0]"), "Positions. Default: 0.");
         assert_eq!(sentence("Runs, e.g.:"), "Runs, e.g.:");
         assert_eq!(escape("see docs/logs.md, <x> `<y>`"), "see [logs.md](logs.md), \\<x> `<y>`");
-        let help = "Example:\n  reachtube demo\n      a note\n\nExit codes: 0 done,\n1 not.";
-        let page = "Example:\n\n    reachtube demo\n        a note\n\nExit codes: 0 done, 1 not.\n";
-        assert_eq!(after(help), page);
+        let mut page = "- `--out`: A file.\n".to_string();
+        exit_codes(&mut page, "Example:\n  reachtube demo\n\nExit codes: 0 done,\n1 not.");
+        assert_eq!(page, "- `--out`: A file.\n\nExit codes: 0 done, 1 not.\n");
     }
 
     #[test]

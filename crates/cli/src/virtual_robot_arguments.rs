@@ -14,8 +14,7 @@ const REMEDY: &str =
 /// How the virtual robot differs from its nominal model.
 #[derive(Debug, Args)]
 pub(crate) struct VirtualRobotArguments {
-    /// Parameters of the virtual robot, a TOML file as docs/campaign.md describes; others have
-    /// their defaults
+    /// TOML file with parameters of the virtual robot, see docs/campaign.md
     #[arg(long, value_name = "FILE")]
     pub parameters: Option<PathBuf>,
 }

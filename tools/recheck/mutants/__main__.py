@@ -21,9 +21,6 @@ from table import MUTANTS  # noqa: E402
 
 from recheck.cli import main  # noqa: E402
 
-SUITES = ("M1a", "M2b")
-
-
 def prepare(demo, folder):
     """Takes what the mutants need of a demo."""
     for name in ("short.json", "exact.json", "planes.json", "cubic.json", "points.jsonl",
@@ -32,11 +29,7 @@ def prepare(demo, folder):
     (folder / "cubic").mkdir()
     for name in ("reach.json", "M1a.csv", "M1a_tube.csv"):
         shutil.copy(demo / "cubic" / name, folder / "cubic")
-    for suite in SUITES:
-        shutil.copytree(demo / "recordings" / suite, folder / "recordings" / suite)
-    lines = (demo / "recordings" / "runs.csv").read_text().splitlines()
-    kept = [line for line in lines[1:] if any(suite in line for suite in SUITES)]
-    (folder / "recordings" / "runs.csv").write_text("\n".join([lines[0], *kept]) + "\n")
+    shutil.copytree(demo / "short", folder / "recordings")
 
 
 def answer(original, model, edit, options):

@@ -14,7 +14,7 @@ REACH = ["--reach", "cubic"]
 UNPRICED = after(*(entry(key, None) for key in ("cost", "cost_lower_bound", "optimality_gap")))
 ROOMY = after(scaled(X0, 1.02), scaled(U, 1.02))
 TO_POINT = after(scaled(X0, 0.0), scaled(U, 0.0))
-ZERO_POINT = point("points.jsonl", 9, y=[0.0] * 12)
+ZERO_POINT = point("points.jsonl", 490, y=[0.0] * 12)
 
 
 def by_part(part):
@@ -99,8 +99,8 @@ RECORDINGS = [
     ("a velocity beyond the set", recording(cell(40, 7, 0.2)), 1),
     ("a velocity beyond the set, not listed", recording(cell(40, 7, 0.2), is_listed=False), 1),
     ("a first position beyond X0", recording(cell(0, 1, 0.01)), 1),
-    ("a harmless change, not listed", recording(cell(675, 1, 1e-9), is_listed=False), 2),
-    ("a harmless change, listed", recording(cell(675, 1, 1e-9)), 0),
+    ("a harmless change, not listed", recording(cell(125, 1, 1e-9), is_listed=False), 2),
+    ("a harmless change, listed", recording(cell(125, 1, 1e-9)), 0),
     ("a recording is left out", index_line(lambda line: ""), 2),
     ("a recording of another suite", index_line(lambda line: line.replace("M1a,", "M2b,", 1)), 1),
     ("a recording that does not exist", index_line(lambda line: line.replace("_02.", "_99.")), 3),
@@ -119,7 +119,7 @@ CERTIFICATES = [
     ("exact", "U 1 % smaller", after(scaled(U, 0.99), UNPRICED), POINTS, 1),
     ("exact", "every second point", nothing, [*POINTS, "--every", "2"], 2),
     ("exact", "a point is missing", lines_of("points.jsonl", drop_line(17)), POINTS, 2),
-    ("exact", "a point of another sample", point("points.jsonl", 9, sample=99), POINTS, 2),
+    ("exact", "a point of another sample", point("points.jsonl", 9, sample=40), POINTS, 2),
     ("exact", "a point of another recording", point("points.jsonl", 9, run="M1a/M1a_01.csv"),
      POINTS, 2),
     ("exact", "factors of no use", ZERO_POINT, POINTS, 2),

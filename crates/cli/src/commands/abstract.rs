@@ -31,8 +31,7 @@ Examples:
 
 /// Make a simple model of a robot's forward dynamics
 ///
-/// Liu and Althoff (2018), Sec. IV-B, define the models. --box proves a bound of the model
-/// error, the forward dynamics minus the model.
+/// Liu and Althoff (2018), Sec. IV-B, define the models.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -52,19 +51,19 @@ pub(crate) struct Arguments {
     /// Order of the Taylor polynomials, 1 or more
     #[arg(long, default_value_t = 1, value_name = "P")]
     pub order: u32,
-    /// Expansion point, separated by commas: n positions in rad; or also n velocities in rad/s; or
-    /// also n inputs in N m [default: 0]
+    /// Expansion point: n positions in rad, or also n velocities in rad/s, or also n inputs in N m
+    /// [default: 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,..")]
     pub expansion: Vec<f64>,
-    /// Prove a bound of the model error over a box about the expansion point: radii of positions
-    /// in rad, velocities in rad/s and inputs in N m; 3 numbers, or 3n
+    /// Prove a bound of the model error over a box about the expansion point: 3 or 3n radii in rad,
+    /// rad/s and N m
     #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
     pub operating_box: Vec<f64>,
     /// Print the polynomials, one line per joint, instead of the summary
     #[arg(long, hide_short_help = true, conflicts_with = "json")]
     pub print: bool,
-    /// Largest number of parts that --box is cut into. Cutting ends where the bound is at most 1.25
-    /// times the largest error found [default: 4 to 1000, for at most some 20 s on two cores]
+    /// Largest number of parts that --box is cut into [default: 4 to 1000, for some 20 s on two
+    /// cores]
     #[arg(long, hide_short_help = true, value_name = "COUNT")]
     pub most_boxes: Option<usize>,
     /// Write the model to this JSON file

@@ -25,39 +25,39 @@ Its README.md has all commands. A campaign that was stopped goes on when it is s
 
 /// Record a whole experiment on a virtual robot, as in the paper
 ///
-/// The folder receives a data set: test suites of random motions with several starting points each,
-/// static poses, slow motions of single joints, and exciting motions. No file is overwritten.
+/// The folder receives test suites of random motions, static poses, slow motions of single joints,
+/// and exciting motions. No file is overwritten.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
     /// Folder for the recordings
     #[arg(long, value_name = "FOLDER")]
     pub out: PathBuf,
-    /// Seed of the random numbers; the same seed gives the same recordings
+    /// Seed of the random numbers
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Number of random point-to-point motions
+    /// Random point-to-point motions
     #[arg(long, default_value_t = 38, value_name = "COUNT")]
     pub motions: usize,
-    /// Number of starting points in each motion; each gives a test suite
+    /// Starting points in each motion; each gives a test suite
     #[arg(long, default_value_t = 4, value_name = "COUNT")]
     pub start_points: usize,
-    /// Number of runs of each suite
+    /// Runs of each suite
     #[arg(long, default_value_t = 15, value_name = "COUNT")]
     pub runs: usize,
     /// Longest duration of a run, s
     #[arg(long, hide_short_help = true, default_value_t = 5.0, value_name = "SECONDS")]
     pub longest: f64,
-    /// Number of static poses, for gravity: two at each position, reached from both sides
+    /// Static poses, for gravity
     #[arg(long, hide_short_help = true, default_value_t = 1000, value_name = "COUNT")]
     pub poses: usize,
-    /// Number of recordings of slow motions for each joint, for friction
+    /// Recordings of slow motions for each joint
     #[arg(long, hide_short_help = true, default_value_t = 6, value_name = "COUNT")]
     pub friction: usize,
-    /// Number of exciting motions, for the inertial parameters
+    /// Exciting motions
     #[arg(long, hide_short_help = true, default_value_t = 6, value_name = "COUNT")]
     pub excitation: usize,
-    /// Number of exciting motions to validate with
+    /// Exciting motions to validate with
     #[arg(long, hide_short_help = true, default_value_t = 2, value_name = "COUNT")]
     pub validation: usize,
     #[command(flatten)]

@@ -19,9 +19,8 @@ Examples:
 
 A model that is not linear is compared by its computed outer set, an enclosure of the reachable set.
 
-Exit codes: 0 all recordings were proved to lie in the reachable set, at samples, as --notion says;
-1 some were not, and the result names a witness (suite, run, time, joint, excess); 2 error;
-3 they were, but the model is vacuous: its sets do not limit some joint.";
+Exit codes: 0 all recordings are proved to lie in the reachable set, at samples, 1 some are not,
+2 error, 3 they are, but the sets do not limit some joint.";
 
 /// Check whether a model encloses other recordings
 #[derive(Debug, Args)]
@@ -29,8 +28,7 @@ Exit codes: 0 all recordings were proved to lie in the reachable set, at samples
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Directions in which the recordings must lie in the reachable set [default: as in the model
-    /// file]
+    /// What must lie in the reachable set [default: as in the model file]
     #[arg(long, value_parser = choice::<Notion>(Notion::NAMES))]
     pub notion: Option<Notion>,
 }

@@ -25,8 +25,7 @@ pub(crate) struct Arguments {
     /// The shell
     #[arg(required_unless_present = "out", conflicts_with = "out")]
     pub shell: Option<Shell>,
-    /// Write the scripts of all shells and all manual pages to this folder, which is laid out as
-    /// /usr/share and ~/.local/share are
+    /// Write the scripts of all shells and all manual pages to this folder, laid out as /usr/share
     #[arg(long, value_name = "FOLDER")]
     pub out: Option<PathBuf>,
 }

@@ -44,7 +44,7 @@ docs/logs.md describes what is read and what is refused.";
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Robot, for the names of its joints: the embedded lwa4p, or a TOML or URDF file
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: String,
     #[command(flatten)]
@@ -52,23 +52,22 @@ pub(crate) struct Arguments {
     /// Logs: MCAP files, .db3 files, or folders of rosbag2
     #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
     pub data: Vec<PathBuf>,
-    /// Topics with joint states; several complement each other at stamps that differ by less than
-    /// half a sample [default: the only one that names joints of the robot]
+    /// Topics with joint states in MCAP and rosbag2; several complement each other [default: the
+    /// only one that names joints of the robot]
     #[arg(long, value_name = "NAME", num_args = 1..)]
     pub topic: Vec<String>,
-    /// Names of the joints in the log, in the robot's order [default: the robot's names]
+    /// Names of the joints in MCAP and rosbag2, in the robot's order [default: the robot's names]
     #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
     /// CSV file with one run per line: start,end in s from the log's first sample, or
     /// start_stamp,end_stamp; suite, motion and log may follow
     #[arg(long, value_name = "FILE", conflicts_with = "marker")]
     pub intervals: Option<PathBuf>,
-    /// Topic that marks runs while it is not empty, true or not 0: a std_msgs/msg/String or Int32,
-    /// whose value is the suite, or a Bool
+    /// Topic that marks runs while it is not empty, true or not 0: a String or Int32, whose value
+    /// is the suite, or a Bool
     #[arg(long, value_name = "NAME")]
     pub marker: Option<String>,
-    /// Make suites of runs that repeat one motion; without --intervals and --marker, the runs are
-    /// the motions between rests
+    /// Make suites of runs that repeat one motion
     #[arg(long)]
     pub repeats: bool,
     /// Speed below which a joint rests, above 0 rad/s or m/s
@@ -82,8 +81,8 @@ pub(crate) struct Arguments {
     /// Read what is whole in a damaged log, and print what is lost
     #[arg(long)]
     pub recover: bool,
-    /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, 10
-    /// times where sample times jitter]
+    /// Longest time between two samples, above 0 s; the input is held over it [default: 1.9 times
+    /// the usual sample time, 10 times where sample times jitter]
     #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
     /// Folder for the recordings and runs.csv

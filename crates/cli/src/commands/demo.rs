@@ -42,16 +42,15 @@ Example:
 
 /// Run every step on a simulated arm: record, fit, conform, calibrate, check, report
 ///
-/// The folder receives the recordings, the model and two report pages: one on the recordings that
-/// the model was made from, one on motions that were held out. It also receives cell.toml and
-/// brakes.toml, for `verify` and `stop`.
+/// The folder receives the recordings, the model, pages, and cell.toml and brakes.toml for `verify`
+/// and `stop`.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
     /// Folder for the recordings, the model and the reports
     #[arg(long, value_name = "FOLDER", default_value = "reachtube-demo")]
     pub out: PathBuf,
-    /// Seed of the random numbers; the same seed gives the same recordings
+    /// Seed of the random numbers
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     #[command(flatten)]

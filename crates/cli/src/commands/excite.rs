@@ -45,28 +45,25 @@ pub(crate) struct Arguments {
         value_parser = RangedU64ValueParser::<usize>::new().range(1..=MOST_HARMONICS)
     )]
     pub harmonics: usize,
-    /// Largest acceleration in rad/s^2: one number for all joints, or one per joint [default: no
-    /// limit]
+    /// Largest acceleration in rad/s^2, for all joints or each [default: no limit]
     #[arg(long, value_delimiter = ',', value_name = "A,..")]
     pub acceleration: Vec<f64>,
     /// Largest speed of joints without a speed limit, rad/s
     #[arg(long, default_value_t = 1.0, value_name = "SPEED")]
     pub speed: f64,
-    /// Minimise the condition number of the base regressor, instead of maximising the determinant
-    /// of its information matrix
+    /// Minimise the condition number, not the determinant of the information matrix
     #[arg(long, hide_short_help = true)]
     pub condition: bool,
     /// Sample rate of the CSV file, above 0 Hz
     #[arg(long, value_name = "HZ", value_parser = hertz, default_value = "100")]
     pub rate: f64,
-    /// Largest number of samples that the CSV file may hold
+    /// Largest number of samples of the CSV file
     #[arg(long, hide_short_help = true, value_name = "COUNT", default_value_t = 1_000_000)]
     pub most_samples: u64,
-    /// Seed of the search; the same seed gives the same motion
+    /// Seed of the search
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// CSV file for one period of the motion: columns t, q, qd, qdd in s and rad, or m for
-    /// prismatic joints
+    /// CSV file for one period: columns t, q, qd, qdd in s and rad, or m
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
 }

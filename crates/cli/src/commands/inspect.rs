@@ -26,26 +26,24 @@ Example:
   reachtube inspect --data recordings
   reachtube inspect --data recordings --json
 
-Exit codes: 0 every recording can be used, 2 some are refused: each kind of defect has one line,
-with the number of defects, the first of them, and the option that accepts it.";
+Exit codes: 0 every recording can be used, 2 some are refused.";
 
 /// Summarise a data set: its suites, runs, sample times, ranges and drift
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Robot that was recorded, for the units of its joints [default: revolute joints]
+    /// Robot, for the units of its joints [default: revolute joints]
     #[arg(long)]
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Folder with runs.csv and the recordings, or a log or folder of logs: CSV files of any
-    /// header, MCAP and rosbag2
+    /// Folder with runs.csv and the recordings, a log, or a folder of logs
     #[arg(long, value_name = "PATH")]
     pub data: PathBuf,
     #[command(flatten)]
     pub log: LogArguments,
-    /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, 10
-    /// times where sample times jitter]
+    /// Longest time between two samples, above 0 s; the input is held over it [default: 1.9 times
+    /// the usual sample time, 10 times where sample times jitter]
     #[arg(long, hide_short_help = true)]
     #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub max_gap: Option<f64>,

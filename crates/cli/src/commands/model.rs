@@ -32,8 +32,7 @@ Examples:
 
 If the command is killed, it continues where it was when it is run again with the same options.
 
-Exit codes: 0 conformant and useful, 1 not proved conformant, 2 error, 3 conformant but too wide to
-be of use.";
+Exit codes: 0 conformant and useful, 1 not proved conformant, 2 error, 3 too wide to be of use.";
 
 /// Make a model of a robot's logs: sets, horizon, page and verdict, in one command
 #[derive(Debug, Args)]
@@ -50,16 +49,14 @@ pub(crate) struct Arguments {
     /// Meaning of the recorded torques
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
-    /// TOML file with choices, as this command writes it; its paths are relative to its folder, and
-    /// options on the command line come before it
+    /// TOML file with choices, as this command writes it
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     /// Time up to which the model predicts, above 0 s [default: the longest at which no set is
     /// wider than half the motion]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub horizon: Option<f64>,
-    /// Motions that are held out from every choice, separated by commas; * and ? match as in M*
-    /// [default: every fourth]
+    /// Motions that are held out from every choice, such as M1,N* [default: every fourth]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
     pub held_out: Vec<String>,
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]

@@ -24,14 +24,13 @@ Then: reachtube inspect --data windows";
 
 /// The torques that can be compensated.
 const TORQUES: Choices = &[
-    ("motor", "motor torque at the output side of the gear"),
-    ("link", "link-side torque, to which is added what the motor's inertia takes"),
+    ("motor", "at the output side of the gear"),
+    ("link", "from a joint torque sensor; the motor's inertia is added"),
 ];
 
 /// Filter recordings, cut them into windows, and write them as test suites
 ///
-/// Sample times are made even, and positions, velocities and torques are filtered forward and
-/// backward, without delay.
+/// Sample times are made even, and signals are filtered without delay.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -43,33 +42,29 @@ pub(crate) struct Arguments {
     /// Recordings: CSV files or folders
     #[arg(long, value_name = "PATH", num_args = 1.., required = true)]
     pub data: Vec<PathBuf>,
-    /// Treat logs whose names differ only after the last _ as repeats of one motion: align them in
-    /// time, and make one suite from each window of all of them
+    /// Make suites of logs whose names differ only after the last _, aligned in time
     #[arg(long)]
     pub repeats: bool,
     /// Length of the windows, above 0 s [default: whole recordings]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub window: Option<f64>,
-    /// Cut-off frequency of the low-pass filter, above 0 and below half the sample rate, Hz
-    /// [default: chosen from the recordings]
+    /// Cut-off frequency of the low-pass filter, below half the sample rate, Hz [default: chosen
+    /// from the recordings]
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     pub cut_off: Option<f64>,
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
     #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub gains: Vec<f64>,
-    /// Names of the robot's joints in the order of the recorded columns [default: the robot's
-    /// order]
+    /// Names of the robot's joints in the order of the columns [default: the robot's order]
     #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
-    /// Write the input u, which is the motor torque less the robot's gravity and dry friction, in
-    /// place of the torque; read it with `--torque compensated`
+    /// Write the input u, less gravity and dry friction, for `--torque compensated`
     #[arg(long)]
     pub compensate: bool,
-    /// Meaning of the recorded torques where they are compensated: to link-side torques, what the
-    /// motors' inertia takes is added by the measured acceleration [default: motor]
+    /// Meaning of the recorded torques that are compensated [default: motor]
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
-    /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
+    /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
     /// also first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,

@@ -23,9 +23,9 @@ Writes report.html, which works offline, and one SVG file per figure to the fold
 /// Where the page has the library of its interactive figures
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub enum AssetsArgument {
-    /// In the page: one file of about 5 MB more
+    /// In the page
     Inside,
-    /// In the file plotly.js beside the page, which the pages of a folder share
+    /// In a file beside the page
     Beside,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     /// Folder for the page and figures
     #[arg(long, value_name = "FOLDER", default_value = "report")]
     pub out: PathBuf,
-    /// Where the page has the JavaScript library of its interactive figures
+    /// Where the page has the library of its interactive figures
     #[arg(long, value_enum, default_value_t = AssetsArgument::Inside)]
     pub assets: AssetsArgument,
 }

@@ -41,8 +41,7 @@ pub(crate) struct ShowArguments {
     pub robot: String,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Positions q_a of the mass matrix M(q_a), one per joint in rad, or in m for a prismatic
-    /// joint, separated by commas [default: 0]
+    /// Positions q_a of the mass matrix M(q_a), one per joint [default: 0]
     #[arg(long, value_name = "Q,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub expansion: Vec<f64>,
 }

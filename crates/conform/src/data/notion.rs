@@ -22,10 +22,10 @@ pub enum Notion {
 impl Notion {
     /// The name of each notion, as in files and options, and its meaning.
     pub const NAMES: &[(&str, &str)] = &[
-        ("hull", "each state by itself: in the interval hull of the set"),
-        ("phase-plane", "position and velocity of each joint together: in the set's projections"),
-        ("exact", "all states together: in the set itself"),
-        ("trace", "exact, and one motion of the model through all samples, up to the noise V"),
+        ("hull", "each state by itself"),
+        ("phase-plane", "position and velocity of each joint together"),
+        ("exact", "all states together"),
+        ("trace", "one motion through all samples, up to the noise V"),
     ];
 
     /// Returns whether recorded points are judged, and not only each state by itself.

@@ -31,8 +31,8 @@ Examples:
   reachtube conform --robot arm.toml --data recordings --torque motor --calibrate M7,M8,M9
       find the sets on the other motions, and scale them to hold these three
 
-Exit codes: 0 conformant and proved, 1 not proved conformant, 2 error, 3 conformant but vacuous:
-the sets do not limit some joint.";
+Exit codes: 0 conformant, which is proved, 1 not proved, 2 error, 3 conformant, but the sets do not
+limit some joint.";
 
 /// Find the smallest sets for which a model encloses every recording, and prove it
 ///
@@ -59,7 +59,7 @@ pub(crate) struct Arguments {
         value_parser = numbered_choice::<ModelKind>(MODELS)
     )]
     pub paper_model: ModelKind,
-    /// Order of the model's Taylor polynomials, 1 or more
+    /// Order of the Taylor polynomials, 1 or more
     #[arg(
         long,
         hide_short_help = true,
@@ -68,8 +68,7 @@ pub(crate) struct Arguments {
         value_name = "P"
     )]
     pub order: u32,
-    /// Expansion point, separated by commas: n positions in rad, or also n velocities in rad/s
-    /// [default: 0]
+    /// Expansion point: n positions in rad, or also n velocities in rad/s [default: 0]
     #[arg(
         long,
         hide_short_help = true,
@@ -87,22 +86,19 @@ pub(crate) struct Arguments {
         conflicts_with_all = ["robot", "lock", "expansion", "paper_model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
-    /// TOML file with values for the options of this command.
-    ///
-    /// Its paths are relative to its folder, and options on the command line come before it.
+    /// TOML file with options of this command; its paths are relative to its folder
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArguments,
     /// Cut recordings into windows of this length, above 0 s, each a suite of its own.
     ///
-    /// Torques of motors or links are filtered first, and the robot's gravity and dry friction are
-    /// taken off them. The data may be logs as they are, one CSV file or a folder; `check`,
-    /// `reach`, `report` and `export` do the same to theirs.
+    /// Torques of motors or links are filtered first, less gravity and dry friction. The data may
+    /// be logs; `check`, `reach`, `report` and `export` do the same to theirs.
     #[arg(long, help_heading = "Data", value_name = "SECONDS", value_parser = seconds)]
     #[arg(allow_negative_numbers = true, conflicts_with = "until")]
     pub horizon: Option<f64>,
-    /// Fit these parameters of the nominal model for the smallest sets, separated by commas
+    /// Fit these parameters of the nominal model, separated by commas
     #[arg(
         long,
         help_heading = "Fit",
@@ -112,9 +108,8 @@ pub(crate) struct Arguments {
         conflicts_with = "abstraction"
     )]
     pub fit: Vec<Group>,
-    /// Weight of the pull toward the identified values, from 0 to 1: part of the identified model's
-    /// cost per unit of the logarithm of a factor, or of half the logarithm for inertia [default:
-    /// chosen by leaving one motion out]
+    /// Weight of the pull toward the identified values, from 0 to 1 [default: chosen by leaving one
+    /// motion out]
     #[arg(
         long,
         hide_short_help = true,
@@ -126,14 +121,14 @@ pub(crate) struct Arguments {
     pub pull: Option<f64>,
     #[command(flatten)]
     pub sets: SetArguments,
-    /// Save the progress of a long search to this file, and continue from it if it exists
+    /// Save the progress of a long search to this file, and continue from it
     #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "FILE")]
     pub resume: Option<PathBuf>,
     /// Write the model to this JSON file
     #[arg(long, help_heading = "Output", value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Write for every recorded point what another program needs to prove that it lies in the
-    /// reachable set, for --notion exact and phase-plane: one line of JSON for each point
+    /// Write what another program needs to prove that each point lies in the set, for --notion
+    /// exact and phase-plane, as lines of JSON
     #[arg(long, hide_short_help = true, help_heading = "Output", value_name = "FILE")]
     pub certificate: Option<PathBuf>,
     /// Write an HTML page and its figures to this folder
@@ -142,10 +137,10 @@ pub(crate) struct Arguments {
 }
 
 const GROUPS: Choices = &[
-    ("inertia", "motor inertia of each joint and density of each link"),
+    ("inertia", "motor inertias and densities of links"),
     ("viscous", "viscous friction"),
     ("cubic", "quadratic and cubic viscous friction"),
-    ("coulomb", "Coulomb friction, by quadrant where the quadrants differ"),
-    ("warm-up", "viscous friction that changes with the order of a suite's runs"),
+    ("coulomb", "Coulomb friction"),
+    ("warm-up", "viscous friction that changes from run to run"),
     ("payload", "a point mass at the last link's frame"),
 ];

@@ -13,8 +13,7 @@ use crate::option_values::{Choices, DISTURBANCES, INITIAL_LIMITS, choice};
 /// The options that decide which sets are found.
 #[derive(Debug, Args)]
 pub(crate) struct SetArguments {
-    /// How the disturbance may change in time; the verdict on a nonlinear model covers measurable
-    /// disturbances in any case
+    /// How the disturbance may change in time
     #[arg(
         long, hide_short_help = true,
         help_heading = "Sets",
@@ -30,7 +29,7 @@ pub(crate) struct SetArguments {
         value_parser = choice::<Centre>(CENTRES)
     )]
     pub centre: Centre,
-    /// Directions in which recordings must lie in the reachable set
+    /// What must lie in the reachable set
     #[arg(
         long,
         help_heading = "Sets",
@@ -46,7 +45,7 @@ pub(crate) struct SetArguments {
         value_parser = choice::<States>(STATES)
     )]
     pub states: States,
-    /// How far X0 may reach. Where nothing limits it, X0 may take over what U would cover later
+    /// How far X0 may reach
     #[arg(
         long, hide_short_help = true,
         help_heading = "Sets",
@@ -54,9 +53,8 @@ pub(crate) struct SetArguments {
         value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
     )]
     pub initial_limit: InitialLimit,
-    /// Weights of the states in the cost: unit (1 for each state); spread (1 over the state's
-    /// largest deviation in the recordings); or 2 or 2n numbers between 1e-9 and 1e9, positions
-    /// first
+    /// Weights of the states in the cost: 1, 1 over the largest deviation, or 2 or 2n numbers
+    /// between 1e-9 and 1e9, positions first
     #[arg(
         long,
         hide_short_help = true,
@@ -66,10 +64,9 @@ pub(crate) struct SetArguments {
         allow_hyphen_values = true
     )]
     pub weights: String,
-    /// Measurement noise V: none, fitted, or its radii in rad and rad/s.
+    /// Measurement noise V: none, fitted, or 2 or 2n radii up to 1e9, in rad, then rad/s.
     ///
-    /// Fitted radii are found with the sets and are at most the sensor noise's. Given radii are 2
-    /// or 2n numbers between 0 and 1e9: positions in rad, then velocities in rad/s.
+    /// Fitted radii are at most the sensor noise's.
     #[arg(
         long,
         help_heading = "Sets",
@@ -78,8 +75,7 @@ pub(crate) struct SetArguments {
         allow_hyphen_values = true
     )]
     pub noise: String,
-    /// Radii of the sensors' noise, 2 or 2n numbers between 0 and 1e9: positions in rad, then
-    /// velocities in rad/s. They limit V of --noise fitted and X0 of --nominal own [default:
+    /// Radii of the sensors' noise, 2 or 2n numbers up to 1e9, in rad, then rad/s [default:
     /// estimated from the recordings]
     #[arg(
         long,
@@ -97,10 +93,7 @@ pub(crate) struct SetArguments {
         value_parser = choice::<NominalStart>(NOMINAL_STARTS)
     )]
     pub nominal: NominalStart,
-    /// Equations of motion that nominal motions satisfy.
-    ///
-    /// With the robot's equations U covers only what the robot itself does not explain; this needs
-    /// a linear model.
+    /// Equations of motion that nominal motions satisfy; the robot's need a linear model
     #[arg(
         long,
         help_heading = "Model",
@@ -108,10 +101,8 @@ pub(crate) struct SetArguments {
         value_parser = choice::<Equations>(EQUATIONS)
     )]
     pub equations: Equations,
-    /// Motions that are held out from the fit, separated by commas; * and ? match as in M*.
-    ///
-    /// Their names are in runs.csv. The sets found on the other motions are scaled until they
-    /// enclose these too, which bounds the probability that the next motion leaves them.
+    /// Motions that are held out, such as M1,N*: the sets are scaled until they enclose these too,
+    /// which bounds the probability that the next motion leaves them
     #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
     pub calibrate: Vec<String>,
     /// Method that finds the sets
@@ -122,16 +113,15 @@ pub(crate) struct SetArguments {
         value_parser = choice::<Method>(METHODS)
     )]
     pub method: Method,
-    /// Search for a motion of the model itself near each recording, within these tolerances in rad
-    /// and rad/s: 2 numbers, 0 or more, or none [default: none for a linear model, otherwise
-    /// 0.001,0.01 for the recordings that decide the sets]
+    /// Search for a motion of the model near each recording, within these tolerances in rad and
+    /// rad/s [default: 0.001,0.01 for the recordings that decide the sets of a nonlinear model]
     #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "none|Q,QD")]
     pub explain: Option<String>,
 }
 
 const CENTRES: Choices = &[
     ("free", "any centre"),
-    ("origin", "any centre for which the set contains 0, as in the paper"),
+    ("origin", "the set contains 0, as in the paper"),
     ("zero", "the centre is 0"),
 ];
 
@@ -142,15 +132,10 @@ const NOMINAL_STARTS: Choices = &[
     ("own", "each run's own first state"),
 ];
 
-const EQUATIONS: Choices = &[
-    ("model", "the model's"),
-    ("robot", "the robot's own; the model describes the deviations from them"),
-];
+const EQUATIONS: Choices = &[("model", "the model's"), ("robot", "the robot's")];
 
-const METHODS: Choices = &[
-    ("program", "linear programs: one for a linear model, a sequence of them otherwise"),
-    ("bisection", "bisection of one radius after the other, the paper's baseline"),
-];
+const METHODS: Choices =
+    &[("program", "linear programs"), ("bisection", "one radius after the other, as in the paper")];
 
 impl SetArguments {
     /// Returns the tolerance of `--explain`, where it is given.

@@ -47,21 +47,21 @@ Each suite, or run with a nominal motion of its own, gets a folder, which also h
 each tool runs its file.";
 
 const TARGETS: Choices = &[
-    ("cora", "CORA 2024 or later, MATLAB files"),
-    ("spaceex", "SpaceEx, XML and configuration"),
-    ("flowstar", "Flow*, a model file for 2.1 or a C++ program for its library"),
-    ("hylaa", "HyLAA 2, a Python script"),
-    ("xspeed", "XSpeed, XML and configuration"),
-    ("juliareach", "ReachabilityAnalysis.jl, a Julia script"),
+    ("cora", "CORA 2024 or later"),
+    ("spaceex", "SpaceEx"),
+    ("flowstar", "Flow*, a model file or a C++ program"),
+    ("hylaa", "HyLAA 2"),
+    ("xspeed", "XSpeed"),
+    ("juliareach", "ReachabilityAnalysis.jl"),
     ("mjcf", "MuJoCo, the robot"),
     ("urdf", "the robot"),
-    ("sara-shield", "SaRA shield, YAML files of the robot and its limits"),
-    ("armour", "ARMOUR, the header of the robot"),
+    ("sara-shield", "SaRA shield"),
+    ("armour", "ARMOUR"),
 ];
 
 const FORMS: Choices = &[
-    ("recorded", "the recorded input held from sample to sample, plus U"),
-    ("deviation", "only U: the deviations from the nominal motion, for affine models"),
+    ("recorded", "held from sample to sample, plus U"),
+    ("deviation", "only U, for affine models"),
     ("range", "any input in the box of all recorded inputs plus U"),
 ];
 
@@ -72,27 +72,24 @@ pub(crate) struct Arguments {
     /// Model file that `conform --out` wrote
     #[arg(long, value_name = "FILE", required_unless_present = "robot")]
     pub model: Option<PathBuf>,
-    /// Robot in place of a model, for mjcf, urdf and armour: the embedded lwa4p, or a TOML or URDF
-    /// file
+    /// Robot in place of a model, for mjcf, urdf and armour
     #[arg(long, value_name = "ROBOT", conflicts_with = "model")]
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// With --to urdf: the URDF whose <inertial> and <dynamics> are to become the robot's. With
-    /// --to sara-shield: the shield's robot_parameters file, its trajectory_parameters file, or
-    /// both, one --update for each. All other text stays as it is
+    /// The URDF, or robot_parameters and trajectory_parameters of the shield, to change; all other
+    /// text stays as it is
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub update: Vec<PathBuf>,
-    /// With --to sara-shield and armour: the links' capsules, a TOML or URDF file [default: the
-    /// capsules of the embedded robot]
+    /// The links' capsules, for sara-shield and armour: a TOML or URDF file [default: the embedded
+    /// robot's]
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub capsules: Option<PathBuf>,
-    /// With --to armour: ratio from 0 to below 1 by which masses and inertias may differ from the
-    /// robot's, which no recording proves
+    /// Ratio from 0 to below 1 by which masses and inertias may differ, for armour
     #[arg(long, value_name = "RATIO", required_if_eq("to", "armour"), hide_short_help = true)]
     #[arg(allow_negative_numbers = true)]
     pub uncertainty: Option<f64>,
-    /// With --to armour: largest torque of each joint, N m
+    /// Largest torque of each joint, for armour, N m
     #[arg(long, value_name = "T1,..", value_delimiter = ',', required_if_eq("to", "armour"))]
     #[arg(hide_short_help = true, allow_negative_numbers = true)]
     pub torque_limits: Vec<f64>,
@@ -105,14 +102,14 @@ pub(crate) struct Arguments {
     /// How the recorded input enters [default: the tightest form that the tool can mean]
     #[arg(long, value_parser = choice::<InputForm>(FORMS))]
     pub input: Option<InputForm>,
-    /// Folder with runs.csv and the recordings, whose torques mean what they meant to `conform`
+    /// Folder with runs.csv and the recordings
     #[arg(long, value_name = "FOLDER", help_heading = "Data")]
     pub data: Option<PathBuf>,
-    /// Test suites to use, separated by commas; * and ? match as in A*,B? [default: all]
+    /// Test suites to use, separated by commas, such as A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     #[arg(help_heading = "Data")]
     pub suites: Vec<String>,
-    /// Use only samples up to this time after the first sample, above 0 s [default: all]
+    /// Time after the first sample up to which samples are used, above 0 s [default: all]
     #[arg(long, hide_short_help = true)]
     #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     #[arg(help_heading = "Data")]

@@ -18,19 +18,16 @@ A settings file holds all of these options and more, see docs/identify.md. Optio
 line override it.";
 
 /// The torques from which a robot can be identified.
-const TORQUES: Choices = &[
-    ("motor", "motor torque at the output side of the gear"),
-    ("link", "link-side torque, which does not drive the motor's inertia"),
-];
+const TORQUES: Choices =
+    &[("motor", "at the output side of the gear"), ("link", "from a joint torque sensor")];
 
 /// Identify a robot's gravity, friction and inertia from its recordings
 ///
-/// Recordings are CSV files with the columns t, q1..qn, qd1..qdn, tau1..taun, or logs (.mcap, .db3)
-/// with joint states. A folder stands for the CSV files in it.
+/// Recordings are CSV files, folders of them, or logs (.mcap, .db3) with joint states.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Robot: the embedded lwa4p, or a TOML or URDF file; required here or in the settings file
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: Option<String>,
     #[command(flatten)]
@@ -38,25 +35,24 @@ pub(crate) struct Arguments {
     /// TOML file with the settings; its paths are relative to its folder
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
-    /// Recordings of poses at rest, for gravity
+    /// Recordings of poses at rest
     #[arg(long = "static", value_name = "PATH", num_args = 1..)]
     pub rest: Vec<PathBuf>,
-    /// Recordings in which one joint at a time moves slowly, for friction
+    /// Recordings in which one joint at a time moves slowly
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub friction: Vec<PathBuf>,
-    /// Recordings of exciting motions, for the inertial parameters; required here or in the
-    /// settings file
+    /// Recordings of exciting motions, for the inertial parameters
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub dynamic: Vec<PathBuf>,
-    /// Recordings held out of every fit, for validation [default: the exciting motions]
+    /// Recordings held out of every fit [default: the exciting motions]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub validate: Vec<PathBuf>,
     /// Topics with joint states in MCAP and rosbag2; several complement each other [default: the
     /// only one that names joints of the robot]
     #[arg(long, hide_short_help = true, value_name = "NAME", num_args = 1..)]
     pub topic: Vec<String>,
-    /// Cut-off frequency of the low-pass filter, above 0 and below half the sample rate, Hz
-    /// [default: chosen from the recordings]
+    /// Cut-off frequency of the low-pass filter, below half the sample rate, Hz [default: chosen
+    /// from the recordings]
     #[arg(long, value_name = "HZ")]
     pub cut_off: Option<f64>,
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
@@ -68,11 +64,11 @@ pub(crate) struct Arguments {
         allow_hyphen_values = true
     )]
     pub gains: Vec<f64>,
-    /// Longest time between two samples, above 0 s [default: 1.9 times the usual sample time, or 10
-    /// times where the sample times jitter]
+    /// Longest time between two samples, above 0 s; the input is held over it [default: 1.9 times
+    /// the usual sample time, 10 times where sample times jitter]
     #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
-    /// Columns of logs whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=clock;
+    /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
     /// also first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
@@ -82,8 +78,7 @@ pub(crate) struct Arguments {
     /// Write the identified robot to this TOML file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Write the robot's URDF with the identified values to this file, with a TOML file beside it
-    /// for motors and friction
+    /// Write the URDF with the identified values to this file, with a TOML file beside it
     #[arg(long, value_name = "FILE")]
     pub urdf: Option<PathBuf>,
     /// Write an HTML page with figures to this folder

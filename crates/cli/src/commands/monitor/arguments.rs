@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     /// Model file; the model must be linear
     #[arg(long, value_name = "FILE")]
     pub model: PathBuf,
-    /// Time between samples, s [default: the median of the first 16 times between samples]
+    /// Time between samples, s [default: the median of the first 16]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub step: Option<f64>,
     /// Length of a window, s [default: as long as the model's recordings were used]
@@ -36,14 +36,14 @@ pub(crate) struct Arguments {
     /// Longest time between two samples, s [default: 1.9 times --step]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
-    /// Recordings of healthy motion, a folder of at least 2: raise an alarm, too, when a sudden
-    /// torque, the drag of a joint or the payload is outside its range in them
+    /// Folder of at least 2 recordings of healthy motion: raise an alarm, too, for a sudden torque,
+    /// a drag or a payload outside its range in them
     #[arg(long, value_name = "FOLDER")]
     pub healthy: Option<PathBuf>,
-    /// Take velocities from the filtered positions, for a model whose logs have none worth using
+    /// Take velocities from the filtered positions
     #[arg(long)]
     pub differentiate: bool,
-    /// Print how much of the sets is used, and their drift, each time this many seconds have passed
+    /// Print how much of the sets is used, and their drift, each time these seconds have passed
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub gauge_every: Option<f64>,
 }

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     /// Folder for the campaign, the tables, the figures and the page
     #[arg(long, value_name = "FOLDER", default_value = "reachtube-paper")]
     pub out: PathBuf,
-    /// Seed of everything random
+    /// Seed of the motions
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// A tenth of the motions, runs and campaigns, and no exact notion: for a first look

@@ -16,20 +16,16 @@ Example:
 Exit codes: 0 every bound holds within three standard errors, 1 one does not, 2 error.";
 
 /// Simulate how often the bounds for the next motion are wrong
-///
-/// Each campaign records 38 random motions of the virtual robot for half a second, finds sets for
-/// them, and states bounds of the probability that the next motion leaves them. Further motions
-/// give the truth.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Number of campaigns, 1 or more
+    /// Number of campaigns
     #[arg(long, default_value_t = 200, value_name = "COUNT")]
     pub campaigns: usize,
-    /// Number of further motions that measure the true probabilities, 1 or more
+    /// Number of further motions that measure the truth
     #[arg(long, default_value_t = 2000, value_name = "COUNT")]
     pub next: usize,
-    /// Seed of the motions; the same seed gives the same motions
+    /// Seed of the motions
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 }

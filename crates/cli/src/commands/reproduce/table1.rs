@@ -22,9 +22,6 @@ Example:
 The paper's trajectories are unpublished, so only the sizes and the order of the errors can agree.";
 
 /// Table I: velocity errors of models 1, 2 and 3 in simulation
-///
-/// The reference is the robot's forward dynamics by Featherstone's articulated-body algorithm,
-/// under the same inputs.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -33,10 +30,10 @@ pub(crate) struct Arguments {
     pub robot: String,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Number of random point-to-point motions, 1 or more; each is simulated slowly and fast
+    /// Number of random point-to-point motions, each slow and fast
     #[arg(long, default_value_t = 50, value_name = "COUNT")]
     pub motions: usize,
-    /// Seed of the motions; the same seed gives the same motions
+    /// Seed of the motions
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// Orders p of the models, separated by commas, each 1 or more
@@ -45,7 +42,7 @@ pub(crate) struct Arguments {
     /// Highest order at which model 3 is simulated
     #[arg(long, default_value_t = 5, value_name = "P")]
     pub model3_up_to: u32,
-    /// Largest distance of a joint from the expansion point q = 0, rad
+    /// Largest distance of a joint from q = 0, rad
     #[arg(
         long,
         default_value_t = std::f64::consts::FRAC_PI_2,

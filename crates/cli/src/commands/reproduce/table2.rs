@@ -30,18 +30,18 @@ Exit codes: 0 every set proved conformant, 1 one is not, 2 error.";
 
 /// Table II: the uncertainty sets of model 1 for the LWA 4P
 ///
-/// Both halves of the table: sets that enclose positions and velocities, and sets that enclose
-/// positions. The sets contain the origin, as the paper's do. Torques are compensated.
+/// Sets that enclose positions and velocities, and sets that enclose positions, from compensated
+/// torques.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
     /// Folder with runs.csv and the recordings
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
-    /// Test suites to use, separated by commas; * and ? match as in A*,B? [default: all]
+    /// Test suites to use, separated by commas, such as A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// Notions of enclosure, separated by commas: hull, phase-plane, exact
+    /// Notions of enclosure, separated by commas
     #[arg(
         long,
         value_name = "NOTION,..",

@@ -23,8 +23,8 @@ show; the last column names the rows that this moves.";
 
 /// Table III: the model of the LWA 4P, identified from a campaign
 ///
-/// Friction, gravity and inertial parameters beside the true ones of the arm, with errors in
-/// standard errors, and beside the paper's.
+/// The parameters beside the true ones of the arm, with errors in standard errors, and beside the
+/// paper's.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
