@@ -140,7 +140,7 @@ impl<'a> Corrector<'a> {
 }
 
 /// The description of a robot without any mass but 1 kg at the origin of its last link's frame.
-fn only_payload(description: &RobotDescription) -> RobotDescription {
+pub(crate) fn only_payload(description: &RobotDescription) -> RobotDescription {
     let mut only = description.clone();
     only.parameters = ParameterSet::Base;
     let last = only.joints.len() - 1;

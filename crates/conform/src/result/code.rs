@@ -171,6 +171,8 @@ codes! {
     NeverLeft = "never-left",
     /// A window of a running robot left its set.
     LeftSet = "left-set",
+    /// A number of a running robot's motion is outside its range in healthy motion.
+    UnlikeHealthy = "unlike-healthy",
 }
 
 #[cfg(test)]

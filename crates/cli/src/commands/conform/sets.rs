@@ -68,9 +68,8 @@ pub(crate) struct SetArguments {
         allow_hyphen_values = true
     )]
     pub weights: String,
-    /// Measurement noise V: none, fitted, or 2 or 2n radii up to 1e9, in rad, then rad/s.
-    ///
-    /// Fitted radii are at most the sensor noise's.
+    /// Measurement noise V: none, fitted up to the sensors' noise, or 2 or 2n radii up to 1e9, in
+    /// rad, then rad/s
     #[arg(
         long,
         help_heading = "Sets",
@@ -105,8 +104,7 @@ pub(crate) struct SetArguments {
         value_parser = choice::<Equations>(EQUATIONS)
     )]
     pub equations: Equations,
-    /// Motions that are held out, such as M1,N*: the sets are scaled until they enclose these too,
-    /// which bounds the probability that the next motion leaves them
+    /// Motions that are held out, such as M1,N*: the sets are scaled until they enclose these too
     #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
     pub calibrate: Vec<String>,
     /// Method that finds the sets
