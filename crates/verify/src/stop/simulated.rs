@@ -96,8 +96,8 @@ impl StopCase {
                 }
                 let drive = self.drive.get(cycle * n..(cycle + 1) * n);
                 let way = arm.advance(is_held, drive);
-                for j in 0..n {
-                    stopped.way[j] += way[j];
+                for (j, way) in way.iter().enumerate() {
+                    stopped.way[j] += way;
                     if arm.v[j].abs() > STANDSTILL {
                         stopped.time[j] = time + arm.step;
                     }

@@ -51,7 +51,7 @@ impl StopSearch<'_> {
             let mut samples = vec![pair.step, last];
             samples.dedup();
             for sample in samples {
-                best = closer(best, self.from_sample(pair, sample));
+                best = closer(best, self.starting_at(pair, sample));
                 if best.as_ref().is_some_and(|best| best.distance < clearance - TOUCH_OF_STOP) {
                     return best;
                 }
@@ -63,7 +63,7 @@ impl StopSearch<'_> {
     /// Searches for the motion whose stop from a sample comes closest: from the nominal one, each
     /// round takes the vertices of X0 and U that bring the end of the stop towards the obstacle.
     /// If stops are triggered at a distance, the motion decides the sample.
-    fn from_sample(&self, pair: &Clearance, sample: usize) -> Option<Witness> {
+    fn starting_at(&self, pair: &Clearance, sample: usize) -> Option<Witness> {
         let Approach { problem, case, .. } = self.approach;
         let (mut start, mut inputs) = self.approach.nominal();
         let mut best = None;
