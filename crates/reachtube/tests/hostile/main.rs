@@ -11,7 +11,9 @@ use std::path::Path;
 use mutation::attack;
 use reachtube::abstraction::PolynomialModel;
 use reachtube::identify::IdentifySettings;
+use reachtube::pipeline::Choices;
 use reachtube::recordings::{DataSet, ReadOptions, read_csv};
+use reachtube::verify::{Brakes, Capsules, Scenario};
 use reachtube::{Model, Robot};
 use reachtube_robot::{Urdf, UrdfOptions};
 
@@ -48,6 +50,21 @@ fn try_texts(count: u64) {
     try_text("settings", seeds::settings(), &|text| {
         drop(IdentifySettings::from_toml(text, "settings.toml"));
     });
+    try_text("choices", seeds::choices(), &|text| drop(Choices::from_toml(text)));
+    let arm = seeds::arm();
+    try_text("capsules", seeds::capsules(), &|text| {
+        drop(Capsules::from_toml(text, "capsules.toml", &arm));
+    });
+    try_text("brakes", seeds::brakes(), &|text| {
+        drop(Brakes::from_toml(text, "brakes.toml", &arm));
+    });
+    try_text("scenario", seeds::scenarios(), &|text| {
+        let scenario = Scenario::parse(text.into(), "scenario.toml", Path::new(""));
+        drop(scenario.and_then(|scenario| scenario.scene(&arm)));
+    });
+    let seeds = seeds::shields();
+    assert!(seeds::shield(&arm, String::from_utf8_lossy(&seeds[0]).into()).is_ok());
+    try_text("shield", seeds, &|text| drop(seeds::shield(&arm, text.into())));
 }
 
 /// Tries the readers of files, in a folder.
