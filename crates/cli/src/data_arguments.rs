@@ -12,7 +12,7 @@ use crate::option_values::{Choices, choice, seconds, trimmed};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
 pub(crate) struct DataArguments {
-    /// Folder with runs.csv and the recordings, or logs for a model that `model` made
+    /// Folder with runs.csv, or logs for a model that `model` made
     #[arg(long, value_name = "FOLDER")]
     pub data: PathBuf,
     /// Test suites to use, separated by commas, such as A*,B? [default: all]

@@ -23,7 +23,7 @@ const SMALL: f64 = 1e-6;
 const SAME: f64 = 1e-3;
 
 /// Width of a character and distance of two lines of names \[px\].
-const CHARACTER: f64 = 6.2;
+const CHARACTER: f64 = 5.8;
 const LINE: f64 = 13.0;
 
 /// Grey.
@@ -149,17 +149,26 @@ fn names(canvas: &Canvas, axes: &[Axis], scale: &Scale) -> DrawResult {
         }
     }
     let style = starting(font(11.0, FontStyle::Normal));
-    let end = units(VIEW[0] - 4.0);
+    let [middle, end] = [units(0.5 * VIEW[1]), units(VIEW[0] - 4.0)];
+    let lowest = lines.iter().map(|((_, y), _)| *y).max().unwrap_or(middle);
+    lines.sort_by_key(|((_, y), _)| *y);
+    let mut below = 0;
     for ((x, y), names) in lines {
         let rows = rows(&names);
         let width = |row: &str| units(CHARACTER * row.chars().count() as f64);
         let beside = x + units(16.0);
-        // Names that do not fit beside the axis are written above it.
-        let are_above = rows.len() > 1 || rows.iter().any(|row| beside + width(row) > end);
-        for (k, row) in rows.iter().rev().enumerate() {
-            let up = if are_above { units(24.0 + LINE * k as f64) } else { 0 };
-            let left = beside.min(end - width(row));
-            canvas.draw_text(&clean(row), &style, (left, y - up))?;
+        let fits = rows.len() == 1 && rows.iter().all(|row| beside + width(row) <= end);
+        for (k, row) in rows.iter().enumerate() {
+            // Names that do not fit beside the axis are written above it, or below the robot.
+            let line = match (fits, y < middle) {
+                (true, _) => y,
+                (false, true) => y - units(24.0 + LINE * (rows.len() - 1 - k) as f64),
+                (false, false) => {
+                    below += 1;
+                    lowest + units(8.0 + LINE * f64::from(below))
+                }
+            };
+            canvas.draw_text(&clean(row), &style, (beside.min(end - width(row)), line))?;
         }
     }
     Ok(())

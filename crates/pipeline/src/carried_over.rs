@@ -86,6 +86,10 @@ impl Trial<'_> {
             let groups = settings.groups.iter().filter(|group| !record.dropped.contains(group));
             FitSettings { pull: Some(record.pull), groups: groups.copied().collect() }
         });
+        // Without one of two motions there is nothing to fit to.
+        if fit.is_some() && all.len() < 3 {
+            return Ok(all);
+        }
         for fold in self.folds {
             let wanted: BTreeSet<&str> = fold.motions.iter().map(String::as_str).collect();
             let Fold { robot, logs, .. } = fold;

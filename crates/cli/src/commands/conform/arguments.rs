@@ -86,7 +86,7 @@ pub(crate) struct Arguments {
         conflicts_with_all = ["robot", "lock", "expansion", "paper_model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
-    /// TOML file with options of this command; its paths are relative to its folder
+    /// TOML file with options of this command; paths relative to it
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     #[command(flatten)]
