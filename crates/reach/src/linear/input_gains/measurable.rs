@@ -128,9 +128,11 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// The expansion Σ A^k V (τ - L/2)^k / k! of e^{Aτ} B for 0 <= τ <= L about L/2, where V = e^{AL/2} B;
-/// in the last term, V is e^{Aτ} B over the whole cell. The last term is below the rounding of the
-/// first: entries that decay while others do not keep a known sign until they are rounding alone.
+/// The expansion Σ A^k V (τ - L/2)^k / k! of e^{Aτ} B for 0 <= τ <= L about L/2.
+///
+/// V is e^{AL/2} B, and in the last term e^{Aτ} B over the whole cell. The last term is below the
+/// rounding of the first: entries that decay while others do not keep a known sign until they are
+/// rounding alone.
 ///
 /// Products of interval matrices would take an interval product per term. Midpoints and radii take
 /// two floating-point matrix products (Rump, Fast and parallel interval arithmetic, BIT 39, 1999).
