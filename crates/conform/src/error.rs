@@ -77,6 +77,23 @@ pub enum Error {
     /// A step for linear models was asked of another one.
     #[error("the model is not linear; use the steps for polynomial models")]
     NotLinear,
+    /// Healthy motion cannot be learnt from so few recordings.
+    #[error(
+        "{count} recordings of healthy motion are too few; give at least 2, of which one half \
+         shapes the ranges and the other scales them"
+    )]
+    TooFewHealthy {
+        /// Number of recordings.
+        count: usize,
+    },
+    /// A recording of healthy motion cannot be used.
+    #[error("healthy recording {name}: {problem}")]
+    Healthy {
+        /// Its name.
+        name: String,
+        /// The problem.
+        problem: String,
+    },
     /// Nominal motions by the robot's own equations were asked of a model that is not linear.
     #[error(
         "nominal motions by the robot's own equations need a linear model, which then describes \
@@ -84,6 +101,9 @@ pub enum Error {
          follow the model's equations"
     )]
     Equations,
+    /// U was to cover stiction, and cannot.
+    #[error("U cannot be widened for stiction: {0}")]
+    Stiction(&'static str),
     /// The notion trace was asked of a problem that it is not for.
     #[error("the notion trace {0}")]
     Trace(&'static str),

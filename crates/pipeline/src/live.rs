@@ -1,7 +1,7 @@
-use reachtube_conform::Model;
-use reachtube_conform::monitor::{Leave, Monitor, Schedule};
+use reachtube_conform::monitor::{Alarm, HealthyMotion, Leave, Monitor, Schedule};
+use reachtube_conform::{Error as ConformError, Model};
 use reachtube_identify::prepare::{LiveLog, VelocitySource};
-use reachtube_recordings::SampleError;
+use reachtube_recordings::{MemoryRuns, ReadOptions, Run, RunSource, SampleError};
 use reachtube_robot::Robot;
 
 use crate::error::Result;
@@ -16,6 +16,9 @@ pub struct LiveMonitor {
     log: Option<LiveLog>,
     monitor: Monitor,
     leaves: Vec<Leave>,
+    alarms: Vec<Alarm>,
+    /// Whether the last recording was ended.
+    is_over: bool,
 }
 
 impl LiveMonitor {
@@ -36,7 +39,56 @@ impl LiveMonitor {
             }
         };
         let leaves = Vec::with_capacity(KEPT * 2 * model.joints());
-        Ok(Self { log, monitor, leaves })
+        let alarms = Vec::with_capacity(KEPT * (2 * model.joints() + 1));
+        Ok(Self { log, monitor, leaves, alarms, is_over: false })
+    }
+
+    /// Learns what healthy motion is from recordings as the logs of a model hold them.
+    ///
+    /// # Errors
+    ///
+    /// As [`HealthyMotion::learn`] and [`LiveLog::new`].
+    pub fn learn(
+        model: &Model,
+        schedule: Schedule,
+        velocity: VelocitySource,
+        runs: &dyn RunSource,
+    ) -> Result<HealthyMotion> {
+        let Some(known) = &model.preparation else {
+            return Ok(HealthyMotion::learn(model, schedule, runs)?);
+        };
+        let Schedule { step, longest_gap, .. } = schedule;
+        let robot = Robot::from_description(&model.robot)?;
+        let mut log = LiveLog::new(&robot, known, velocity, step, longest_gap)?;
+        let mut prepared = MemoryRuns::default();
+        for index in 0..runs.runs().len() {
+            let name = runs.run_name(index).display().to_string();
+            let wrong = |problem: String| ConformError::Healthy { name: name.clone(), problem };
+            let options = ReadOptions { joints: Some(model.joints()), ..ReadOptions::default() };
+            let run = runs.read(index, &options).map_err(|defects| {
+                let problem = defects.first().map(ToString::to_string);
+                wrong(problem.unwrap_or_else(|| "it cannot be read".into()))
+            })?;
+            let run = live_run(&mut log, &run).map_err(&wrong)?;
+            prepared.push(&name, None, None, run);
+        }
+        Ok(HealthyMotion::learn(model, schedule, &prepared)?)
+    }
+
+    /// Compares motion with healthy motion, too, as [`Monitor::watch`] does.
+    ///
+    /// # Errors
+    ///
+    /// As there.
+    pub fn watch(&mut self, healthy: &HealthyMotion) -> Result<()> {
+        Ok(self.monitor.watch(healthy)?)
+    }
+
+    /// Returns what the samples that were pushed last, or a finish, show to be unlike healthy
+    /// motion.
+    #[must_use]
+    pub fn alarms(&self) -> &[Alarm] {
+        if self.is_over || self.log.is_none() { self.monitor.alarms() } else { &self.alarms }
     }
 
     /// Takes a sample as [`Monitor::push`] does: time \[s\], positions, velocities and torques as
@@ -52,16 +104,20 @@ impl LiveMonitor {
         qd: &[f64],
         torque: &[f64],
     ) -> Result<&[Leave], SampleError> {
-        let Self { log, monitor, leaves } = self;
+        self.is_over = false;
+        let Self { log, monitor, leaves, alarms, .. } = self;
         let Some(log) = log else { return monitor.push(time, q, qd, torque) };
         log.take(time, [q, qd, torque])?;
         leaves.clear();
+        alarms.clear();
         while let Some(sample) = log.next() {
             let n = q.len();
             let (state, torque) = (sample.state(), sample.torque());
             let left = monitor.push(sample.time, &state[..n], &state[n..], torque)?;
             let room = leaves.capacity() - leaves.len();
             leaves.extend_from_slice(&left[..left.len().min(room)]);
+            let (raised, room) = (monitor.alarms(), alarms.capacity() - alarms.len());
+            alarms.extend_from_slice(&raised[..raised.len().min(room)]);
         }
         Ok(leaves)
     }
@@ -69,6 +125,7 @@ impl LiveMonitor {
     /// Ends a recording, as [`Monitor::finish`].
     pub fn finish(&mut self) -> &[Leave] {
         self.log.iter_mut().for_each(LiveLog::clear);
+        self.is_over = true;
         self.monitor.finish()
     }
 
@@ -83,4 +140,20 @@ impl LiveMonitor {
     pub fn delay(&self) -> f64 {
         self.log.as_ref().map_or(0.0, LiveLog::delay) + self.monitor.delay()
     }
+}
+
+/// Returns a recording as a log prepares it sample by sample.
+fn live_run(log: &mut LiveLog, run: &Run) -> Result<Run, String> {
+    let [mut times, mut states, mut torques] = [vec![], vec![], vec![]];
+    for (k, &time) in run.times.iter().enumerate() {
+        let parts = [run.q(k), run.qd(k), run.torque(k)];
+        log.take(time, parts).map_err(|problem| problem.to_string())?;
+        while let Some(sample) = log.next() {
+            times.push(sample.time);
+            states.extend_from_slice(sample.state());
+            torques.extend_from_slice(sample.torque());
+        }
+    }
+    log.clear();
+    Run::new(run.joints, times, states, torques).map_err(|problem| problem.to_string())
 }

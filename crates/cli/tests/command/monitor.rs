@@ -63,6 +63,24 @@ fn a_healthy_motion_stays_and_a_fault_is_reported_when_it_happens() {
 }
 
 #[test]
+fn healthy_recordings_calibrate_alarms() {
+    let lab = lab();
+    let text = lab.read("data/A_2.csv");
+    let run = monitor(&lab, "--horizon 0.1 --healthy data --json", &text).exits(0);
+    assert!(run.stderr.contains("calibrated, not proved"), "{}", run.stderr);
+    let events = events(&run);
+    events.iter().for_each(|event| fits("monitor", event));
+    let summary = events.last().unwrap();
+    assert_eq!(summary["totals"]["alarms"], 0);
+    assert!(summary["alarm_bound"].as_f64().unwrap() < 1.0, "{summary}");
+    std::fs::create_dir(lab.path("one")).unwrap();
+    lab.write("one/run.csv", &text);
+    lab.write("one/runs.csv", "file,suite\nrun.csv,A\n");
+    let run = monitor(&lab, "--horizon 0.1 --healthy one", &text).exits(2);
+    assert!(run.stderr.contains("1 recordings of healthy motion are too few"), "{}", run.stderr);
+}
+
+#[test]
 fn a_replayed_recording_has_the_rows_of_a_check() {
     let lab = lab();
     std::fs::create_dir(lab.path("alone")).unwrap();

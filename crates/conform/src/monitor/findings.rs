@@ -32,8 +32,14 @@ impl Totals {
     /// Returns the verdict about all windows.
     #[must_use]
     pub fn finding(&self) -> Finding {
-        let Self { samples, windows, left, rows, outside } = *self;
-        let finding = if left == 0 {
+        let Self { samples, windows, left, rows, outside, alarms } = *self;
+        let finding = if left == 0 && alarms > 0 {
+            let text = format!(
+                "unlike healthy motion: {alarms} alarms; {samples} samples stayed in the sets of \
+                 all windows, of which {windows} ended"
+            );
+            Finding::new(Severity::Failure, Code::UnlikeHealthy, text)
+        } else if left == 0 {
             let text = format!(
                 "never left: {samples} samples stayed in the sets of all windows, of which \
                  {windows} ended"
@@ -42,10 +48,12 @@ impl Totals {
         } else {
             let text = format!(
                 "left: {left} windows left their sets, {windows} ended; {outside} of {rows} rows \
-                 are outside"
+                 are outside{}",
+                if alarms > 0 { format!("; {alarms} alarms") } else { String::new() }
             );
             Finding::new(Severity::Failure, Code::LeftSet, text)
         };
-        finding.with("samples", samples as f64).with("windows_left", left as f64)
+        let finding = finding.with("samples", samples as f64).with("windows_left", left as f64);
+        finding.with("alarms", alarms as f64)
     }
 }

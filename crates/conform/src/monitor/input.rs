@@ -3,6 +3,9 @@
 use reachtube_recordings::{Sample, Torque};
 use reachtube_robot::{Robot, Workspace};
 
+use crate::error::Result;
+use crate::monitor::residual::Residual;
+
 /// Evaluates the input of the model as [`Torque::input`] does.
 #[derive(Debug, Clone)]
 pub(crate) struct InputOf {
@@ -20,6 +23,15 @@ impl InputOf {
         let workspace = Workspace::new(robot);
         let (sin, cos, gravity) = (zeros(), zeros(), zeros());
         Self { robot: robot.clone(), torque, workspace, sin, cos, gravity }
+    }
+
+    /// Returns the residual of samples that are `step` \[s\] apart.
+    ///
+    /// # Errors
+    ///
+    /// As [`Residual::new`].
+    pub(crate) fn residual(&self, step: f64) -> Result<Residual> {
+        Residual::new(&self.robot, self.torque, step)
     }
 
     /// Computes the input at a sample into `input` (n).

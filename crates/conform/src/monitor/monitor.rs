@@ -6,11 +6,15 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::model::file::Model;
+use crate::monitor::alarm::Alarm;
 use crate::monitor::delayed::Delayed;
+use crate::monitor::fault_watch::{FaultWatch, Task};
+use crate::monitor::healthy::HealthyMotion;
 use crate::monitor::input::InputOf;
 use crate::monitor::leave::Leave;
 use crate::monitor::nominal::LiveNominal;
 use crate::monitor::schedule::Schedule;
+use crate::monitor::statistics::Shape;
 use crate::monitor::window::{Sets, Window};
 use crate::tube::grids::Grid;
 
@@ -81,6 +85,9 @@ struct Judge {
     /// The input of the sample before, n.
     before: Vec<f64>,
     leaves: Vec<Leave>,
+    /// What else tells faults, and the alarms of the samples that were taken last.
+    faults: Option<FaultWatch>,
+    alarms: Vec<Alarm>,
     progress: Progress,
 }
 
@@ -97,6 +104,8 @@ pub struct Totals {
     pub rows: u64,
     /// Rows that do not hold.
     pub outside: u64,
+    /// Alarms of motion unlike healthy motion.
+    pub alarms: u64,
 }
 
 /// What was found so far.
@@ -142,6 +151,8 @@ impl Monitor {
             count: 0,
             before: vec![0.0; n],
             leaves: Vec::new(),
+            faults: None,
+            alarms: Vec::with_capacity(at_once * (2 * n + 1)),
             progress: Progress::new(2 * n),
             sets,
         };
@@ -166,6 +177,7 @@ impl Monitor {
         self.even.take(time, [q, qd, torque])?;
         let Self { even, delayed, judge } = self;
         judge.leaves.clear();
+        judge.alarms.clear();
         while let Some(sample) = even.next() {
             match delayed {
                 None => judge.take(sample),
@@ -185,8 +197,10 @@ impl Monitor {
     pub fn finish(&mut self) -> &[Leave] {
         let Self { even, delayed, judge } = self;
         judge.leaves.clear();
+        judge.alarms.clear();
         if let Some(delayed) = delayed {
             judge.leaves.reserve(delayed.waiting() * judge.most_at_once());
+            judge.alarms.reserve(delayed.waiting() * (2 * judge.before.len() + 1));
             while let Some(sample) = delayed.next(true) {
                 judge.take(sample);
             }
@@ -194,8 +208,56 @@ impl Monitor {
         }
         even.clear();
         judge.count = 0;
+        judge.faults.iter_mut().for_each(FaultWatch::clear);
         judge.windows.iter_mut().for_each(|window| window.sample = None);
         &self.judge.leaves
+    }
+
+    /// Compares motion with healthy motion, too, from now on: see [`alarms`](Self::alarms).
+    ///
+    /// # Errors
+    ///
+    /// When no robot can be made with a payload only.
+    pub fn watch(&mut self, healthy: &HealthyMotion) -> Result<()> {
+        let ranges = healthy.ranges();
+        let outside = vec![false; ranges.len()];
+        self.begin_task(healthy.shape.clone(), Task::Watch { ranges, outside })
+    }
+
+    /// Returns what the samples that were pushed last, or a finish, show to be unlike healthy
+    /// motion; nothing unless [`watch`](Self::watch) was called. Each alarm is raised once, when
+    /// a number leaves its range.
+    #[must_use]
+    pub fn alarms(&self) -> &[Alarm] {
+        &self.judge.alarms
+    }
+
+    /// Learns from the samples that follow, without windows.
+    pub(crate) fn begin_lesson(&mut self, shape: Shape, task: Task) -> Result<()> {
+        self.judge.windows.clear();
+        self.begin_task(shape, task)
+    }
+
+    /// Returns what was learnt.
+    pub(crate) fn end_lesson(&mut self) -> Option<FaultWatch> {
+        self.judge.faults.take()
+    }
+
+    fn begin_task(&mut self, shape: Shape, task: Task) -> Result<()> {
+        let step = self.step();
+        let residual = self.judge.input.residual(step)?;
+        self.judge.faults = Some(FaultWatch::new(residual, shape, step, task));
+        Ok(())
+    }
+
+    /// Returns the number of joints.
+    pub(crate) fn joints(&self) -> usize {
+        self.judge.before.len()
+    }
+
+    /// Returns the time between samples, s.
+    fn step(&self) -> f64 {
+        self.judge.sets.grid.times.times().get(1).copied().unwrap_or(0.0)
     }
 
     /// Returns how many samples, windows and rows there were.
@@ -277,6 +339,15 @@ impl Judge {
             }
         }
         self.input.evaluate(sample, &mut self.before);
+        if let Some(faults) = &mut self.faults {
+            let Self { alarms, before, progress, .. } = self;
+            faults.take(sample, before, |alarm| {
+                progress.totals.alarms += 1;
+                if alarms.len() < alarms.capacity() {
+                    alarms.push(alarm);
+                }
+            });
+        }
     }
 }
 

@@ -8,13 +8,14 @@ const HELP: &str = "\
 Examples:
   robot-driver | reachtube monitor --model model.json
   reachtube monitor --model model.json --step 0.001 --horizon 0.2 --json < run.csv
+  robot-driver | reachtube monitor --model model.json --healthy recordings
 
 Reads samples from standard input, either CSV with the header t,q1..qn,qd1..qdn,tau1..taun or one
 JSON object per line: {\"t\":0.1,\"q\":[..],\"qd\":[..],\"tau\":[..]}. Prints a line at once when
 a window of the motion leaves the reachable set, and a summary at the end or on Ctrl-C
 (docs/monitor.md).
 
-Exit codes: 0 no window left its set, 1 a window left its set, 2 error.";
+Exit codes: 0 no window left its set, 1 a window left its set or an alarm was raised, 2 error.";
 
 /// Watch a running robot: report at once when its motion leaves the model's sets
 #[derive(Debug, Args)]
@@ -35,6 +36,10 @@ pub(crate) struct Arguments {
     /// Longest time between two samples, s [default: 1.9 times --step]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
+    /// Folder of at least 2 recordings of healthy motion: raise an alarm, too, for a sudden torque,
+    /// a drag or a payload outside its range in them
+    #[arg(long, value_name = "FOLDER")]
+    pub healthy: Option<PathBuf>,
     /// Take velocities from the filtered positions
     #[arg(long)]
     pub differentiate: bool,

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use reachtube::conform::Finding;
-use reachtube::conform::monitor::{Leave, Monitor};
+use reachtube::conform::monitor::{Alarm, HealthyMotion, Leave, Monitor};
 use reachtube::recordings::State;
 use reachtube::robot::{JointKind, Robot};
 use serde_json::{Value, json};
@@ -19,12 +19,14 @@ pub(super) struct Events {
     kinds: Vec<JointKind>,
     /// The first event.
     first: Option<Finding>,
+    /// How probable an alarm is in one more healthy recording at most.
+    alarm_bound: Option<f64>,
 }
 
 impl Events {
     pub(super) fn new(robot: &Robot, json: bool) -> Self {
         let names = robot.joints().iter().map(|joint| joint.name.clone()).collect();
-        Self { json, names, kinds: robot.kinds(), first: None }
+        Self { json, names, kinds: robot.kinds(), first: None, alarm_bound: None }
     }
 
     /// Prints a line for each window that is left for the first time, with its worst state.
@@ -52,6 +54,44 @@ impl Events {
             return line(&event);
         }
         output::print(&text)
+    }
+
+    /// Notes what healthy motion is.
+    pub(super) fn healthy(&mut self, healthy: &HealthyMotion) {
+        let bound = healthy.bound();
+        self.alarm_bound = Some(bound);
+        output::note(&format!(
+            "alarms are calibrated, not proved: one more recording of such motion raises one with \
+             probability at most {bound:.3}"
+        ));
+        let ranges = healthy.ranges();
+        let resting = self.names.iter().zip(&ranges).filter(|(_, range)| range.is_none());
+        let resting: Vec<&str> = resting.map(|(name, _)| &**name).collect();
+        if !resting.is_empty() {
+            output::note(&format!(
+                "the healthy recordings move {} too little: no sudden torque on it is noticed",
+                resting.join(", ")
+            ));
+        }
+    }
+
+    /// Prints a line for each alarm.
+    pub(super) fn alarms(&mut self, alarms: &[Alarm]) -> Result<()> {
+        for alarm in alarms {
+            let joint = alarm.joint.map(|joint| (&*self.names[joint - 1], self.kinds[joint - 1]));
+            let finding = alarm.finding(joint);
+            if self.json {
+                let mut event = serde_json::to_value(alarm).expect("an event has string keys");
+                event["event"] = "alarm".into();
+                event["name"] = joint.map(|(name, _)| name).into();
+                event["code"] = finding.code.name().into();
+                line(&event)?;
+            } else {
+                output::print(&format!("{}\n", finding.text))?;
+            }
+            self.first.get_or_insert(finding);
+        }
+        Ok(())
     }
 
     /// Prints how much of the sets is used at a time, s.
@@ -88,6 +128,7 @@ impl Events {
                 "totals": totals,
                 "largest_used": monitor.largest_used(),
                 "drift": monitor.drift(),
+                "alarm_bound": self.alarm_bound,
                 "findings": findings,
             }));
         }

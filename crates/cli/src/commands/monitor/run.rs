@@ -6,6 +6,7 @@ use reachtube::conform::Error as ConformError;
 use reachtube::conform::monitor::Schedule;
 use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
+use reachtube::recordings::DataSet;
 use reachtube::robot::Robot;
 
 use crate::commands::monitor::arguments::Arguments;
@@ -50,9 +51,11 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         Some(monitor) => {
             let left = monitor.finish().to_vec();
             watch.events.left(&left)?;
+            watch.events.alarms(monitor.alarms())?;
             let words = ended.as_ref().copied().unwrap_or("error");
             watch.events.summary(monitor.found(), words)?;
-            Outcome::of(monitor.found().totals().left == 0)
+            let totals = monitor.found().totals();
+            Outcome::of(totals.left == 0 && totals.alarms == 0)
         }
     };
     ended.map(|_| outcome)
@@ -165,7 +168,7 @@ impl Watch<'_> {
             true => VelocitySource::Differentiated,
             false => VelocitySource::Recorded,
         };
-        let monitor = LiveMonitor::new(self.model, schedule, velocity)?;
+        let mut monitor = LiveMonitor::new(self.model, schedule, velocity)?;
         output::note(&format!(
             "samples every {step} s, windows of {:.4} s, a new one every {:.4} s",
             monitor.found().horizon(),
@@ -177,6 +180,12 @@ impl Watch<'_> {
                  accelerations used, with samples from after each one",
                 monitor.delay()
             ));
+        }
+        if let Some(folder) = &self.args.healthy {
+            let healthy =
+                LiveMonitor::learn(self.model, schedule, velocity, &DataSet::open(folder)?)?;
+            self.events.healthy(&healthy);
+            monitor.watch(&healthy)?;
         }
         self.monitor = Some(monitor);
         for (number, sample) in std::mem::take(&mut self.first) {
@@ -191,6 +200,7 @@ impl Watch<'_> {
         let left =
             monitor.push(*t, q, qd, tau).map_err(|problem| wrong(number, &problem.to_string()))?;
         self.events.left(left)?;
+        self.events.alarms(monitor.alarms())?;
         if let Some(every) = self.args.gauge_every
             && *t >= self.next_gauge
         {

@@ -1,0 +1,58 @@
+use reachtube_robot::JointKind;
+use serde::Serialize;
+
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+
+/// The kind of a fault that makes motion unlike healthy motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fault {
+    /// A torque that acts on a joint suddenly, as a collision's does, N m.
+    Push,
+    /// Friction of a joint that the model does not have, N m.
+    Drag,
+    /// A mass at the origin of the last link's frame that the model does not have, kg.
+    Payload,
+}
+
+/// A number that is outside its range in healthy motion.
+///
+/// # Guarantee
+///
+/// None for a single alarm: it is calibrated, not proved.
+/// [`HealthyMotion::bound`](crate::monitor::HealthyMotion::bound) bounds how often healthy motion
+/// raises one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Alarm {
+    /// Time of the sample, s.
+    pub time: f64,
+    /// What changed.
+    pub fault: Fault,
+    /// Joint, from 1; `None` for the payload.
+    pub joint: Option<usize>,
+    /// The number, N m or kg.
+    pub value: f64,
+    /// The least and the largest number without an alarm, N m or kg.
+    pub range: [f64; 2],
+}
+
+impl Alarm {
+    /// Returns the alarm as a finding; `joint` has the name and the kind of its joint.
+    #[must_use]
+    pub fn finding(&self, joint: Option<(&str, JointKind)>) -> Finding {
+        let Self { time, value, range: [low, high], .. } = *self;
+        let (name, kind) = joint.unwrap_or(("the arm", JointKind::Revolute));
+        let (what, unit) = match self.fault {
+            Fault::Push => (format!("a sudden torque acts on {name}"), kind.force_unit()),
+            Fault::Drag => (format!("{name} drags"), kind.force_unit()),
+            Fault::Payload => ("the payload is not the model's".into(), "kg"),
+        };
+        let text = format!(
+            "{time:.4} s: {what}: {value:.2} {unit}; in healthy motion between {low:.2} and \
+             {high:.2} {unit}"
+        );
+        let finding = Finding::new(Severity::Failure, Code::UnlikeHealthy, text).at(name);
+        finding.with("time", time).with("value", value).with("low", low).with("high", high)
+    }
+}
