@@ -26,7 +26,8 @@ def rows_of_commands(builds, folder, options):
 def command(build, arguments, folder):
     """Returns the command of a build. The oldest builds know no --quiet, and name models
     otherwise."""
-    arguments = [*arguments, "--out", folder / ("model.json" if "conform" in arguments else "arm.toml")]
+    out = "model.json" if "conform" in arguments else "arm.toml"
+    arguments = [*arguments, "--out", folder / out]
     if build.name == "now":
         return [build.command, "--quiet", *arguments]
     renamed = {"--paper-model": "--model"} if not knows(build, "--paper-model") else {}
@@ -65,6 +66,6 @@ def reading_limit(whole):
     """Words the time to read the bytes once from memory and to digest them on one core."""
     content = numpy.fromfile(whole, numpy.uint8)
     words = content[: len(content) // 8 * 8].view(numpy.uint64)
-    reading = peers.least_time(words.max, count=3)
+    reading = peers.least_time(words.max, count=1)
     digest = peers.least_time(lambda: hashlib.sha256(content), count=1, rounds=3)
     return f"reading {reading:.2f} s, SHA-256 {digest:.2f} s"

@@ -24,12 +24,12 @@ class Limit:
         return f"{operations:.1f} GFLOP/s fused, {copied:.1f} GB/s copied"
 
     def of_operations(self, count):
-        """Returns the time of so many operations, or of those that a name stands for, s."""
+        """Returns the time of `count` operations, or of the algorithm with this name, s."""
         count = self.numbers.get(count) if isinstance(count, str) else count
         return count and self.numbers and count / self.numbers["operations_per_second"]
 
     def of_bytes(self, count):
-        """Returns the time of copying so many bytes, s."""
+        """Returns the time of copying `count` bytes, s."""
         return self.numbers and count / self.numbers["copied_bytes_per_second"]
 
 

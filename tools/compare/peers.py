@@ -21,7 +21,7 @@ POLARS_PARSING = """import io, sys, pathlib, polars
 sys.path.insert(0, sys.argv[1])
 from peers import least_time
 content = pathlib.Path(sys.argv[2]).read_bytes()
-print(least_time(lambda: polars.read_csv(io.BytesIO(content)), count=20))"""
+print(least_time(lambda: polars.read_csv(io.BytesIO(content)), count=1))"""
 
 
 def polars(script, path):
@@ -29,7 +29,7 @@ def polars(script, path):
     return [sys.executable, "-c", script, path]
 
 
-def least_time(work, count=200, rounds=7):
+def least_time(work, count=10, rounds=200):
     """Returns the least time of one call among several rounds, s."""
     times = []
     for _ in range(rounds):

@@ -31,6 +31,12 @@ const CELL_NORM: f64 = 2.0;
 /// Largest number of cells of one step.
 const MOST_CELLS: usize = 256;
 
+/// Size of the last term of an expansion, relative to the first, that is below every rounding.
+const BELOW_ROUNDING: f64 = 1e-18;
+
+/// Largest order of an expansion.
+const MOST_ORDER: usize = 16;
+
 /// Computes κ(t_k) = ∫₀^{t_k} |e^{Aτ} B| dτ, N x m, at every sample.
 ///
 /// # Guarantee
@@ -48,7 +54,7 @@ pub(super) struct Cells<'a> {
     /// Number of cells of one step of the grid.
     parts: usize,
     pub series: TaylorSeries,
-    within: SecondOrder,
+    within: Expansion,
     /// ∫ |e^{Aτ} B| over each cell.
     integrals: Vec<IntervalMatrix>,
     /// Cells in which each entry may change sign, N x m.
@@ -60,7 +66,7 @@ impl<'a> Cells<'a> {
         let (propagation, parts) = refine(propagation);
         let system = propagation.system();
         let longest = propagation.grid().longest_step();
-        let within = SecondOrder::new(system, longest);
+        let within = Expansion::new(system, longest);
         let series = TaylorSeries::new(system, longest);
         let turning = DMatrix::from_element(system.states(), system.inputs(), Vec::new());
         let mut cells = Self { parts, series, within, integrals: Vec::new(), turning, propagation };
@@ -122,15 +128,18 @@ impl<'a> Cells<'a> {
     }
 }
 
-/// The expansion of e^{Aτ} B for 0 <= τ <= L to second order about L/2:
-/// value + slope (τ - L/2) + curvature (τ - L/2)²/2.
+/// The expansion Σ A^k V (τ - L/2)^k / k! of e^{Aτ} B for 0 <= τ <= L about L/2.
+///
+/// V is e^{AL/2} B, and in the last term e^{Aτ} B over the whole cell. The last term is below the
+/// rounding of the first: entries that decay while others do not keep a known sign until they are
+/// rounding alone.
 ///
 /// Products of interval matrices would take an interval product per term. Midpoints and radii take
 /// two floating-point matrix products (Rump, Fast and parallel interval arithmetic, BIT 39, 1999).
-struct SecondOrder {
-    /// Midpoints of \[value, slope L/2, curvature L²/8\], N x 3m.
+struct Expansion {
+    /// Midpoints of the terms A^k V (L/2)^k / k!, N x (order + 1) m.
     mid: DMatrix<f64>,
-    /// For the value, and for the sum of the two others: their errors rad + (N + 1) u |mid|, above
+    /// For the first term, and for the sum of the others: their errors rad + (N + 1) u |mid|, above
     /// their magnitudes |mid| + rad, 2N x 2m.
     spread: DMatrix<f64>,
     /// Entries that are zero at every time, N x m.
@@ -139,28 +148,24 @@ struct SecondOrder {
 
 /// Scratch memory of the products for one cell.
 struct Products {
-    /// Products with the midpoints, N x 3m.
+    /// Products with the midpoints, N x (order + 1) m.
     mid: DMatrix<f64>,
     /// \[|midpoints|, radii\] of the exponential, N x 2N.
     sizes: DMatrix<f64>,
-    /// Errors of the products: of the value, and of the two others in sum, N x 2m.
+    /// Errors of the products: of the first term, and of the others in sum, N x 2m.
     error: DMatrix<f64>,
 }
 
-impl SecondOrder {
+impl Expansion {
     fn new(system: &LinearSystem, longest: f64) -> Self {
         let (a, b) = (point(system.a()), point(system.b()));
         let (n, m) = b.shape();
         let value = product(&step(system, Interval::point(0.5 * longest)).phi, &b);
         let over_cell =
             product(&step(system, Interval::ZERO.hull(Interval::point(longest))).phi, &b);
-        let half = Interval::point(longest) * 0.5;
-        let terms = [
-            value.clone(),
-            product(&a, &value) * half,
-            product(&a, &product(&a, &over_cell)) * (half.sqr() * 0.5),
-        ];
-        let (mut mid, mut spread) = (DMatrix::zeros(n, 3 * m), DMatrix::zeros(2 * n, 2 * m));
+        let terms = terms(&a, value, over_cell, Interval::point(longest) * 0.5);
+        let mut mid = DMatrix::zeros(n, terms.len() * m);
+        let mut spread = DMatrix::zeros(2 * n, 2 * m);
         for (part, term) in terms.iter().enumerate() {
             mid.columns_mut(part * m, m).copy_from(&midpoint(term));
             for (at, x) in (0..n * m).zip(term) {
@@ -178,13 +183,13 @@ impl SecondOrder {
     fn products(&self) -> Products {
         let (n, m) = self.zero.shape();
         Products {
-            mid: DMatrix::zeros(n, 3 * m),
+            mid: DMatrix::zeros(n, self.mid.ncols()),
             sizes: DMatrix::zeros(n, 2 * n),
             error: DMatrix::zeros(n, 2 * m),
         }
     }
 
-    /// Multiplies E, which is within `rad` of `mid` (N x N, column by column), by the three terms.
+    /// Multiplies E, which is within `rad` of `mid` (N x N, column by column), by the terms.
     ///
     /// With the floating-point product Ẽ P̃ of the midpoints,
     /// |E P - Ẽ P̃| <= |Ẽ| (rad P + (N + 1) u |P̃|) + rad E (|P̃| + rad P).
@@ -212,7 +217,9 @@ impl SecondOrder {
         let error = |part: usize| {
             round_up_sum(products.error.as_slice()[part * entries + at], terms) + UNDERFLOW
         };
-        let radius = round_up_sum(part(1).abs() + part(2).abs() + error(0) + error(1), 4);
+        let parts = self.mid.ncols() / self.zero.ncols();
+        let beyond = (1..parts).map(|k| part(k).abs()).sum::<f64>();
+        let radius = round_up_sum(beyond + error(0) + error(1), parts + 1);
         (Interval::centred(part(0), radius), 2.0 * error(0))
     }
 }
@@ -230,4 +237,26 @@ fn refine(propagation: &Propagation) -> (Cow<'_, Propagation>, usize) {
         return (Cow::Owned(finer), parts);
     }
     (Cow::Borrowed(propagation), 1)
+}
+
+/// Returns the terms A^k V `half`^k / k!, where V is `value`, and `over_cell` in the last one.
+fn terms(
+    a: &IntervalMatrix,
+    value: IntervalMatrix,
+    over_cell: IntervalMatrix,
+    half: Interval,
+) -> Vec<IntervalMatrix> {
+    let largest = |of: &IntervalMatrix| of.iter().map(|x| x.mag()).fold(0.0, f64::max);
+    let negligible = BELOW_ROUNDING * largest(&value);
+    let (mut terms, mut last) = (vec![value], over_cell);
+    for k in 1.. {
+        let factor = half / Interval::point(k as f64);
+        last = product(a, &last) * factor;
+        if k == MOST_ORDER || largest(&last) <= negligible {
+            terms.push(last);
+            break;
+        }
+        terms.push(product(a, &terms[k - 1]) * factor);
+    }
+    terms
 }
