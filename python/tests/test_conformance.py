@@ -7,7 +7,7 @@ import json
 import pickle
 import warnings
 from pathlib import Path
-from typing import get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 import pytest
@@ -49,6 +49,52 @@ def test_nominal_motions_may_follow_the_robot(robot: rt.Robot) -> None:
     assert by_robot.cost < 0.5 * model.cost, (by_robot.cost, model.cost)
     with pytest.raises(rt.ReachtubeError, match="need a linear model"):
         rt.conform(robot, exact, torque="motor", order=3, equations="robot")
+
+
+def test_saving_counts_the_models_that_the_same_motions_calibrated(
+    robot: rt.Robot, data: rt.Recordings, tmp_path: Path
+) -> None:
+    def calibrated(disturbance: Literal["sample", "measurable"]) -> rt.Model:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", rt.ReachtubeWarning)
+            return rt.conform(
+                robot, data, torque="motor", disturbance=disturbance, calibrate=["m1"]
+            )
+
+    def saved(model: rt.Model, path: Path) -> dict[str, Any]:
+        path.parent.mkdir(exist_ok=True)
+        model.save(path)
+        content: dict[str, Any] = json.loads(path.read_text())
+        assert rt.Model.load(path).cost == model.cost
+        return content
+
+    first, second = calibrated("sample"), calibrated("measurable")
+    alone = saved(first, tmp_path / "one" / "first.json")
+    assert "candidates" not in alone["calibration"] and alone["trust"]["kind"] == "guarantee"
+    # The bound of one motion, 1/2, is too weak for the better of two models.
+    both = saved(second, tmp_path / "one" / "second.json")
+    assert both["calibration"]["candidates"] == 2 and "kind" not in both["trust"]
+    # A copy of the same model is no other one, and other folders are not known.
+    assert saved(second, tmp_path / "other" / "second.json")["trust"]["kind"] == "guarantee"
+    copy = saved(second, tmp_path / "other" / "copy.json")
+    assert "candidates" not in copy["calibration"]
+
+
+def test_stiction_widens_the_input_set(robot: rt.Robot, data: rt.Recordings) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rt.ReachtubeWarning)
+        model, wider = (
+            rt.conform(robot, data, torque="motor", stiction=stiction)
+            for stiction in (False, True)
+        )
+    small, wide = model.to_dict(), wider.to_dict()
+    assert wider.verified and "stiction" not in small and len(wide["stiction"]) == 6
+    radii = (content["input_set"]["radius"] for content in (small, wide))
+    grown = np.subtract(*reversed(list(radii)))
+    assert np.allclose(grown, wide["allowance"][12:]) and (grown > 1).all()
+    assert "stiction" in [finding.code for finding in wider.findings]
+    with pytest.raises(rt.ReachtubeError, match="have no friction"):
+        rt.conform(robot, data, torque="link", stiction=True)
 
 
 def test_not_conformant_is_a_value_with_a_witness(model: rt.Model, robot: rt.Robot) -> None:

@@ -21,6 +21,9 @@ from .robot import SLOW, Robot, coulomb_torque, softened_coulomb_torque, viscous
 # A load (N m) whose sign depends on rounding.
 NO_LOAD = 1e-9
 
+# Coulomb friction beyond the robot's own, in no quadrant.
+NONE = (0.0,) * 4
+
 
 @dataclass
 class Case:
@@ -193,8 +196,8 @@ class _Evaluation:
         joints = self.correction.get("joints", [])
         warm_coulomb = self.warms and self.torque == "compensated"
         self.parts = [
-            [part + own.get("warm_up_coulomb", 0.0) * warmth for part in own.get("coulomb", (0.0,) * 4)]
-            for own, warmth in zip(joints, self.warmth)
+            [part + own.get("warm_up_coulomb", 0.0) * warmth for part in own.get("coulomb", NONE)]
+            for own, warmth in zip(joints, self.warmth, strict=False)
         ]
         self.loads = warm_coulomb or any(any(parts) for parts in self.parts)
 

@@ -73,8 +73,8 @@ const LEAST_INERTIA: f64 = 0.1;
 /// The largest payload that is tried, kg.
 const LARGEST_PAYLOAD: f64 = 100.0;
 
-/// Numbers of warm-up by temperature change friction by a part per this many K, so that they are as
-/// large as those of warm-up by ln(run).
+/// Numbers of warm-up by temperature change friction by a part per this many K. They are then as
+/// large as the numbers of warm-up by ln(run).
 const WARMING: f64 = 10.0;
 
 impl Quantity {

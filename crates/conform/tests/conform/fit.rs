@@ -3,13 +3,13 @@
 use crate::common::{Random, conform_all, grid, step, two_joints};
 use nalgebra::DVector;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, OperatingBox, linear_model};
-use reachtube_conform::fit::{FitRecord, Fitted, FittedParameter};
+use reachtube_conform::fit::{FitRecord, Fitted};
 use reachtube_conform::fleet::{Fold, OnDefect};
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::result::Code;
 use reachtube_conform::settings::{Centre, NominalStart};
 use reachtube_conform::{
-    FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, Tube, carry_over, check, fit,
+    FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, carry_over, fit,
 };
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, RunSource, Torque};
@@ -20,26 +20,26 @@ const RUNS: usize = 5;
 
 /// What the virtual arm is, beside the robot that is given to `conform`.
 #[derive(Clone, Copy, Default)]
-struct Truth {
+pub(crate) struct Truth {
     /// Factor on the elbow's viscous friction.
-    elbow: f64,
+    pub elbow: f64,
     /// What is added to the shoulder's motor inertia, kg m².
-    shoulder: f64,
+    pub shoulder: f64,
     /// Change of the elbow's viscous friction with ln(run), N m s/rad.
-    warm_up: f64,
+    pub warm_up: f64,
     /// Change of the elbow's viscous friction, N m s/rad, and of the shoulder's Coulomb friction,
     /// N m, per K above 30 °C.
-    heat: [f64; 2],
+    pub heat: [f64; 2],
     /// Extra friction of the shoulder against the motion, N m.
-    coulomb: f64,
+    pub coulomb: f64,
     /// Mass at the tip, whose weight along -y the recorded input does not carry, kg.
-    payload: f64,
+    pub payload: f64,
     /// Whether every third time between two samples is twice as long.
-    uneven: bool,
+    pub uneven: bool,
 }
 
 /// Runs of the arm in motions of their own amplitude and frequency.
-fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
+pub(crate) fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
     let kinds = [(1, ParameterKind::Viscous1), (0, ParameterKind::MotorInertia)];
     let parameters = kinds.map(|(joint, kind)| Parameter { joint, kind });
     let (mut times, mut random) = (grid(0.01, SAMPLES), Random(7));
@@ -82,7 +82,7 @@ fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
     runs
 }
 
-fn problem(truth: Truth, motions: usize, adjust: impl Fn(&mut Settings)) -> Problem {
+pub(crate) fn problem(truth: Truth, motions: usize, adjust: impl Fn(&mut Settings)) -> Problem {
     let robot = two_joints();
     let mut settings = Settings::new(Torque::Compensated, 2);
     adjust(&mut settings);
@@ -91,11 +91,11 @@ fn problem(truth: Truth, motions: usize, adjust: impl Fn(&mut Settings)) -> Prob
     Problem::read(setup, runs, &[], Keep::All, &Silent).unwrap()
 }
 
-fn fitted(problem: &Problem, groups: &[Group], pull: Option<f64>) -> Fitted {
+pub(crate) fn fitted(problem: &Problem, groups: &[Group], pull: Option<f64>) -> Fitted {
     fit(problem, &FitSettings { groups: groups.to_vec(), pull }, &Silent).unwrap()
 }
 
-const PLAIN: Truth = Truth {
+pub(crate) const PLAIN: Truth = Truth {
     elbow: 1.0,
     shoulder: 0.0,
     warm_up: 0.0,
@@ -173,92 +173,6 @@ fn standard_errors_of_the_description_stand_beside_the_values() {
     // A fitted value is no identified one, and has no error.
     let joints = &problem.robot().description().joints;
     assert!(joints[1].friction.standard_errors.is_none(), "{joints:?}");
-}
-
-#[test]
-fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
-    let truth = Truth { elbow: 1.2, warm_up: -0.25, ..PLAIN };
-    let problem = problem(truth, 3, |_| {});
-    let without = fitted(&problem, &[Group::Viscous], Some(0.001));
-    let Fitted { problem: better, record, .. } =
-        fitted(&problem, &[Group::Viscous, Group::WarmUp], Some(0.001));
-    assert!(record.cost < 0.4 * without.record.cost, "{record:?}");
-    let elbow = record.parameters.iter().find(|p| p.joint == 2 && p.group == Group::WarmUp);
-    assert!((elbow.unwrap().fitted + 0.25).abs() < 0.05, "{record:?}");
-    let found = conform_all(&better);
-    assert!(found.verdict.conformant);
-    // What the file says is what was found, and a check with it knows the order of the runs.
-    let model = Model::new(&better, &found).with_fit(record);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("model.json");
-    std::fs::write(&path, model.to_json()).unwrap();
-    let (read, setup) = Model::open(&path).unwrap();
-    assert_eq!(read, model);
-    let runs = Box::new(self::record(&two_joints(), truth, 3));
-    let same = Problem::read(setup, runs, &[], Keep::Needed, &Silent).unwrap();
-    let verdict = check(&read, &same, &Tube::new(&same, read.sets()).unwrap()).unwrap();
-    assert!(verdict.verdict.conformant, "{:?}", verdict.verdict);
-    // Without the correction the recordings leave the same sets.
-    let none = same.setup().clone().without_correction();
-    let other = same.with_setup(none);
-    let verdict = check(&read, &other, &Tube::new(&other, read.sets()).unwrap()).unwrap();
-    assert!(!verdict.verdict.conformant);
-}
-
-#[test]
-fn friction_that_changes_with_recorded_temperatures_is_found() {
-    let truth = Truth { heat: [-0.03, -0.01], ..PLAIN };
-    let read = |setup: Setup, keep| {
-        let runs = Box::new(self::record(&two_joints(), truth, 3));
-        Problem::read(setup, runs, &[], keep, &Silent).unwrap()
-    };
-    let mut description = two_joints().description().clone();
-    description.joints[0].friction.coulomb = [0.2, 0.0, -0.2, 0.0, -0.2, 0.0, 0.2, 0.0];
-    let robot = Robot::from_description(&description).unwrap();
-    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 2)).unwrap();
-    let problem = read(setup, Keep::All);
-    let before = conform_all(&problem);
-    let Fitted { problem: better, record, .. } = fitted(&problem, &[Group::WarmUp], Some(0.001));
-    assert!(record.cost < 0.4 * before.cost, "{} {}", before.cost, record.cost);
-    let of = |joint: usize, unit: &str| {
-        let is = |p: &&FittedParameter| p.joint == joint && p.unit == unit;
-        record.parameters.iter().find(is).unwrap().fitted
-    };
-    assert!((of(2, "N m/(rad/s)/K") + 0.03).abs() < 0.005, "{:?}", record.parameters);
-    // The change of Coulomb friction is in parts of 0.2 N m.
-    assert!((of(1, "1/K") + 0.05).abs() < 0.01, "{:?}", record.parameters);
-    // The file keeps it, and a check with it knows the temperatures of the recordings.
-    let found = conform_all(&better);
-    assert!(found.verdict.conformant && found.any_run.is_some());
-    let model = Model::new(&better, &found).with_fit(record);
-    let (model, setup) = Model::parse(&model.to_json(), "model.json".as_ref()).unwrap();
-    let same = read(setup, Keep::Needed);
-    let verdict = check(&model, &same, &Tube::new(&same, model.sets()).unwrap()).unwrap();
-    assert!(verdict.verdict.conformant, "{:?}", verdict.verdict);
-    // Without the temperatures every recording has the friction of the reference.
-    let runs = Box::new(self::record(&two_joints(), Truth { heat: [0.0; 2], ..truth }, 1));
-    let setup = same.setup().clone();
-    let cold = Problem::read(setup, runs, &[], Keep::Needed, &Silent).unwrap();
-    let notes = cold.recordings().notes.join("\n");
-    assert!(notes.contains("5 of the 5 recordings have no columns temp1"), "{notes}");
-}
-
-#[test]
-fn coulomb_friction_is_taken_off_along_the_nominal_motion() {
-    let problem = problem(Truth { coulomb: 0.3, ..PLAIN }, 2, |_| {});
-    let robot = {
-        let mut description = two_joints().description().clone();
-        description.joints[0].friction.coulomb = [0.2, 0.0, -0.2, 0.0, -0.2, 0.0, 0.2, 0.0];
-        Robot::from_description(&description).unwrap()
-    };
-    let setup = Setup::new(robot, problem.settings().clone()).unwrap();
-    let problem = problem.with_setup(setup);
-    let Fitted { problem: better, record, .. } = fitted(&problem, &[Group::Coulomb], Some(1e-4));
-    // The recorded input is free of 0.2 N m already, and 0.3 N m more are there.
-    let [only] = &record.parameters[..] else { panic!("{record:?}") };
-    assert!((only.fitted - 0.5).abs() < 0.02, "{only:?}");
-    assert!(record.cost < 0.5 * record.identified_cost, "{record:?}");
-    assert!(conform_all(&better).verdict.conformant);
 }
 
 #[test]

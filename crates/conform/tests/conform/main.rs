@@ -4,6 +4,7 @@ mod badly_scaled;
 mod common;
 mod equations;
 mod fit;
+mod fit_friction;
 mod fit_schunk;
 mod fold;
 mod friction;

@@ -128,7 +128,7 @@ pub(crate) fn arm() -> Robot {
 pub(crate) fn choices() -> Vec<Vec<u8>> {
     let text = "robot = \"arm.urdf\"\ntorque = \"motor\"\nlock = [\"a\", \"b=1.5\"]\nhorizon = \
                 0.3\nallowance = [0.0, 0.1]\nequations = \"robot\"\nfit = [\"inertia\"]\n\
-                expansion = [0.1, -2]\nrepeats = true\n";
+                expansion = [0.1, -2]\ncut-off = 5.0\n";
     vec![text.into(), format!("# horizon: two words\n{text}").into_bytes()]
 }
 
@@ -142,8 +142,7 @@ pub(crate) fn capsules() -> Vec<Vec<u8>> {
 
 pub(crate) fn brakes() -> Vec<Vec<u8>> {
     let text = "torque = [[40, 60.5], [20, 30]]\ndelay = [0.01, 0.03]\nerror = [0.5, 0.1]\n\
-                deceleration = [2.0, 3]\n\n[payload]\nmass = [0, 1.5]\ncentre = [[0, 0.1], [0, \
-                0], [0, 0.05]]\n";
+                deceleration = [2.0, 3]\n\n[payload]\nmass = 1.5\ncentre = [0, 0.1, -0.05]\n";
     vec![text.into(), b"torque = [[40, 60], [20, 30]]\ndelay = [0, 0]\n".into()]
 }
 
