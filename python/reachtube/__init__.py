@@ -34,6 +34,7 @@ from ._verify import (
     StopTrigger,
     Verification,
     Witness,
+    WitnessStop,
     verify,
 )
 from .errors import (
@@ -84,6 +85,7 @@ __all__ = [
     "StopTrigger",
     "Verification",
     "Witness",
+    "WitnessStop",
     "WorstStop",
     "abstract",
     "check",

@@ -42,6 +42,7 @@ def conform(
     notion: Notion = "hull",
     states: Literal["all", "positions"] = "all",
     initial_limit: Literal["none", "positions", "states"] = "none",
+    stiction: bool = False,
     weights: Literal["unit", "spread"] | npt.ArrayLike = "unit",
     noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
     sensor_noise: npt.ArrayLike | None = None,
@@ -93,6 +94,9 @@ def conform(
         States that must be enclosed.
     initial_limit
         How far X0 may reach: positions or states no further than the recorded starts.
+    stiction
+        Widen U by the dry friction that is possible where joints may come to rest, for other
+        motions under the same motor torque.
     weights
         Weights of the states in the cost: 1, the reciprocal of the spread, or 2 or 2n numbers.
     noise

@@ -42,6 +42,25 @@ class Margin:
 
 
 @dataclass(frozen=True)
+class WitnessStop:
+    """The stop that ends a simulated motion."""
+
+    from_time: float
+    """The time at which it begins, s."""
+    brake: tuple[float, ...]
+    """The torque of each brake, N m."""
+    delay: float
+    """The time from which the brakes hold, after the drives are off, s."""
+    error: tuple[float, ...]
+    """What is added to the torque of each joint, N m."""
+
+    @classmethod
+    def _of(cls, row: dict[str, Any]) -> WitnessStop:
+        brake, error = tuple(row["brake"]), tuple(row["error"])
+        return cls(float(row["from"]), brake, float(row["delay"]), error)
+
+
+@dataclass(frozen=True)
 class Witness:
     """The simulated motion that comes closest to an obstacle."""
 
@@ -55,6 +74,14 @@ class Witness:
     """Time of that sample, s."""
     start: tuple[float, ...]
     """The initial state, 2n, rad and rad/s."""
+    stop: WitnessStop | None
+    """The stop that ends it; ``None`` if it goes on."""
+
+    @classmethod
+    def _of(cls, row: dict[str, Any]) -> Witness:
+        stop = row["stop"]
+        stop = None if stop is None else WitnessStop._of(stop)
+        return cls(**{**row, "start": tuple(row["start"]), "stop": stop})
 
 
 @dataclass(frozen=True)
@@ -107,7 +134,7 @@ class MotionVerdict:
             row["answer"],
             tuple(clearance(pair) for pair in row["clearances"]),
             tuple(Margin(**{**one, "margin": infinite(one["margin"])}) for one in row["margins"]),
-            None if found is None else Witness(**{**found, "start": tuple(found["start"])}),
+            None if found is None else Witness._of(found),
             None if stops is None else tuple(trigger(one) for one in stops["trigger"]),
         )
 

@@ -45,6 +45,7 @@ def test_a_forked_process_raises_at_once(
     assert status_of_fork(lambda: robot.rnea(states, states, states)) == 0
     assert status_of_fork(lambda: rt.conform(robot, data, torque="motor")) == 0
     assert status_of_fork(lambda: rt.check(model, data)) == 0
+    assert status_of_fork(lambda: rt.model(robot, data, torque="motor")) == 0
     # What reads and computes with no other thread goes on.
     assert status_of_fork(lambda: data[0].q.sum()) == 1
     # The parent has its threads.

@@ -6,6 +6,8 @@ import json
 import os
 import pickle
 import subprocess
+import warnings
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -48,13 +50,50 @@ def logs(arm: rt.Robot) -> list[rt.Run]:
 
 
 @pytest.fixture(scope="module")
-def built(
-    arm: rt.Robot, logs: list[rt.Run], tmp_path_factory: pytest.TempPathFactory
-) -> rt.BuiltModel:
+def choices(tmp_path_factory: pytest.TempPathFactory) -> Path:
     # Three motions give sets so small that the fourth needs three times the set of a joint.
-    choices = tmp_path_factory.mktemp("choices") / "choices.toml"
-    choices.write_text("largest-growth = 4.0\nlargest-outside = 0.2\n")
+    file = tmp_path_factory.mktemp("choices") / "choices.toml"
+    file.write_text("largest-growth = 4.0\nlargest-outside = 0.2\n")
+    return file
+
+
+@pytest.fixture(scope="module")
+def built(arm: rt.Robot, logs: list[rt.Run], choices: Path) -> rt.BuiltModel:
     return rt.model(arm, logs, torque="motor", horizon=0.1, settings=choices)
+
+
+@dataclass
+class OfFiles:
+    """A model of a robot file and a folder of logs, and what was said meanwhile."""
+
+    file: Path
+    folder: Path
+    built: rt.BuiltModel
+    told: list[str]
+
+
+@pytest.fixture(scope="module")
+def of_files(
+    arm: rt.Robot, logs: list[rt.Run], tmp_path_factory: pytest.TempPathFactory
+) -> OfFiles:
+    place, told = tmp_path_factory.mktemp("files"), list[str]()
+    folder, file = place / "logs", place / "arm.toml"
+    folder.mkdir()
+    for run in logs:
+        write_csv(folder, [rt.Run(run.t, run.q, run.qd, run.tau)])
+        (folder / "1.csv").rename(folder / f"{run.name}.csv")
+    (folder / "runs.csv").unlink()
+    arm.save(file)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rt.ReachtubeWarning)
+        found = rt.model(
+            rt.Robot.load(file),
+            folder,
+            "motor",
+            horizon=0.1,
+            progress=lambda done, total, sentences: told.extend(sentences),
+        )
+    return OfFiles(file, folder, found, told)
 
 
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
@@ -91,26 +130,10 @@ def test_logs_are_prepared_for_the_model(built: rt.BuiltModel, logs: list[rt.Run
 
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
 def test_paths_give_the_files_of_the_command(
-    built: rt.BuiltModel, arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
+    built: rt.BuiltModel, of_files: OfFiles, tmp_path: Path
 ) -> None:
-    folder, out = tmp_path / "logs", tmp_path / "arm"
-    folder.mkdir()
-    for run in logs:
-        named = rt.Run(run.t, run.q, run.qd, run.tau)
-        write_csv(folder, [named])
-        (folder / "1.csv").rename(folder / f"{run.name}.csv")
-    (folder / "runs.csv").unlink()
-    file = tmp_path / "arm.toml"
-    arm.save(file)
-    told: list[str] = []
-    other = rt.model(
-        rt.Robot.load(file),
-        folder,
-        "motor",
-        horizon=0.1,
-        progress=lambda done, total, sentences: told.extend(sentences),
-    )
-    assert any(sentence.startswith("horizon: 0.1 s") for sentence in told)
+    out, other = tmp_path / "arm", of_files.built
+    assert any(sentence.startswith("horizon: 0.1 s") for sentence in of_files.told)
     # Runs in memory have the same numbers; only their motions have other names.
     np.testing.assert_array_equal(
         other.model.initial_set.radius, built.model.initial_set.radius
@@ -123,29 +146,47 @@ def test_paths_give_the_files_of_the_command(
     with pytest.raises(rt.ReachtubeError, match="exists"):
         other.save(out)
     # The same choices give the same bytes, and one that is given replaces its own.
-    again = rt.model(rt.Robot.load(file), settings=out / "choices.toml")
+    robot = rt.Robot.load(of_files.file)
+    again = rt.model(robot, settings=out / "choices.toml")
     again.save(out, force=True)
     assert again.model == other.model
-    assert str(folder) in (out / "choices.toml").read_text()
-    shorter = rt.model(rt.Robot.load(file), settings=out / "choices.toml", horizon=0.05)
-    assert shorter.horizon == 0.05
-    assert json.loads(json.dumps(shorter.to_dict()))["horizon"] == 0.05
+    assert str(of_files.folder) in (out / "choices.toml").read_text()
+    assert json.loads(json.dumps(again.to_dict()))["horizon"] == 0.1
+    with pytest.raises(rt.ReachtubeError, match="as long as the horizon of 9 s"):
+        rt.model(robot, settings=out / "choices.toml", horizon=9.0)
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_parquet_files_give_the_sets_of_their_runs(
+    built: rt.BuiltModel, arm: rt.Robot, logs: list[rt.Run], choices: Path, tmp_path: Path
+) -> None:
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    read = []
+    for run in logs:
+        file = tmp_path / f"{run.name}.parquet"
+        parquet.write_table(pyarrow.Table.from_pandas(run.to_pandas()), file)
+        read.append(rt.io.parquet(file, motion=run.motion))
+    found = rt.model(arm, read, torque="motor", horizon=0.1, settings=choices)
+    for own, other in zip(
+        [found.model.initial_set, found.model.input_set],
+        [built.model.initial_set, built.model.input_set],
+        strict=True,
+    ):
+        np.testing.assert_array_equal(own.radius, other.radius)
+        np.testing.assert_array_equal(own.centre, other.centre)
+    assert found.held_out == built.held_out and found.joints == built.joints
 
 
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
 @pytest.mark.skipif("REACHTUBE" not in os.environ, reason="needs the command")
 def test_the_files_are_those_of_the_command_byte_for_byte(
-    arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
+    of_files: OfFiles, tmp_path: Path
 ) -> None:
-    folder, file = tmp_path / "logs", tmp_path / "arm.toml"
-    folder.mkdir()
-    for run in logs:
-        write_csv(folder, [rt.Run(run.t, run.q, run.qd, run.tau)])
-        (folder / "1.csv").rename(folder / f"{run.name}.csv")
-    (folder / "runs.csv").unlink()
-    arm.save(file)
-    rt.model(rt.Robot.load(file), folder, "motor", horizon=0.1).save(tmp_path / "python")
-    command = [os.environ["REACHTUBE"], "model", "--robot", str(file), "--data", str(folder)]
+    of_files.built.save(tmp_path / "python")
+    command = [os.environ["REACHTUBE"], "model", "--robot", str(of_files.file)]
+    command += ["--data", str(of_files.folder)]
     command += ["--torque", "motor", "--horizon", "0.1", "--out", str(tmp_path / "command")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     # 3 says that the model is not accepted.
@@ -222,19 +263,16 @@ def test_windows_of_logs_are_what_the_command_writes(
         rt.prepare(arm, logs, columns={"torque": "m_{}"})
 
 
-@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
-def test_runs_of_files_of_other_libraries_give_the_same_model(
-    built: rt.BuiltModel, arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
+def test_runs_of_files_of_other_libraries_are_the_same_runs(
+    logs: list[rt.Run], tmp_path: Path
 ) -> None:
-    def read(run: rt.Run) -> rt.Run:
+    for run in logs:
         path = tmp_path / f"{run.name}.npz"
         np.savez(path, t=run.t, q=run.q, qd=run.qd, tau=run.tau)
-        return rt.io.npz(path, motion=run.motion)
-
-    other = rt.model(arm, [read(run) for run in logs], "motor", horizon=0.1)
-    np.testing.assert_array_equal(
-        other.model.initial_set.radius, built.model.initial_set.radius
-    )
+        other = rt.io.npz(path, motion=run.motion)
+        assert (other.name, other.motion) == (path.name, run.motion)
+        for part in ("t", "q", "qd", "tau"):
+            np.testing.assert_array_equal(getattr(other, part), getattr(run, part))
 
 
 def test_columns_and_logs_that_do_not_fit_are_refused(

@@ -96,6 +96,7 @@ def test_verdicts_are_typed(model: rt.Model, robot: rt.Robot, tmp_path: Path) ->
     assert not below and below.answer == "unsafe"
     found = below.motions[0].closest
     assert found is not None and found.distance < 0 and len(found.start) == 12
+    assert found.stop is None
     below.save(tmp_path / "cell")
     assert {path.name for path in (tmp_path / "cell").iterdir()} == {"A.svg", "A_closest.csv"}
     # A file, and a model and recordings in memory, give the same answer.

@@ -1,5 +1,6 @@
 """What peers take for the same work; `None` if a peer cannot be installed here."""
 
+import math
 import os
 import shutil
 import subprocess
@@ -7,12 +8,20 @@ import sys
 import time
 from pathlib import Path
 
+from limits import run_for_this_machine
+
 HERE = Path(__file__).resolve().parent
 
 POLARS_ONE = "import sys, polars; print(polars.read_csv(sys.argv[1]).height)"
 POLARS_MANY = """import sys, pathlib, polars
 files = sorted(pathlib.Path(sys.argv[1]).glob("*/*.csv"))
 print(sum(polars.read_csv(file).height for file in files))"""
+
+POLARS_PARSING = """import io, sys, pathlib, polars
+sys.path.insert(0, sys.argv[1])
+from peers import least_time
+content = pathlib.Path(sys.argv[2]).read_bytes()
+print(least_time(lambda: polars.read_csv(io.BytesIO(content)), count=20))"""
 
 
 def polars(script, path):
@@ -45,8 +54,8 @@ def dace_product(variables, order):
 
 
 def pinocchio(folder):
-    """Returns the times of rnea, aba and crba of Pinocchio for six joints, s. Its headers come with
-    the package; they need g++ and Boost."""
+    """Returns the times of rnea, forward dynamics and crba of Pinocchio for six joints, s, by name.
+    Its headers come with the package; they need g++ and Boost."""
     try:
         import cmeel
     except ImportError:
@@ -69,18 +78,33 @@ def pinocchio(folder):
             print(f"Pinocchio is left out: {done.stderr.splitlines()[:1]}", file=sys.stderr)
             return None
     numbers = subprocess.run([program], capture_output=True, text=True, check=True).stdout.split()
-    return [float(number) * 1e-9 for number in numbers]
+    times = [float(number) * 1e-9 for number in numbers]
+    return dict(zip(("rnea", "forward_dynamics", "crba"), times))
 
 
 def inari(folder):
     """Returns the time of one multiply-add of intervals in inari, s."""
-    environment = {**os.environ, "RUSTFLAGS": "-C target-cpu=native", "RUSTC_WORKSPACE_WRAPPER": ""}
-    target = ["--target-dir", folder / "inari"]
+    printed = run_for_this_machine("inari", folder)
+    return printed and float(printed) * 1e-9
+
+
+def recording(samples):
+    """Returns a recording of six joints as the benchmark of reading makes it."""
+    names = [f"{of}{joint}" for of in ("q", "qd", "tau") for joint in range(1, 7)]
+    lines = [",".join(["t", *names])]
+    for k in range(samples):
+        values = [math.sin(0.01 * k + column) for column in range(18)]
+        lines.append(",".join([f"{0.004 * k:.3f}", *(f"{value:.6f}" for value in values)]))
+    return "\n".join(lines) + "\n"
+
+
+def polars_parsing(content, folder):
+    """Returns the least time in which one thread of polars parses a recording in memory, s."""
+    path = folder / "recording.csv"
+    path.write_text(content)
+    environment = {**os.environ, "POLARS_MAX_THREADS": "1"}
     done = subprocess.run(
-        ["cargo", "run", "--quiet", "--release", *target], cwd=HERE / "inari", env=environment,
-        capture_output=True, text=True,
+        [sys.executable, "-c", POLARS_PARSING, HERE, path],
+        env=environment, capture_output=True, text=True,
     )
-    if done.returncode != 0:
-        print(f"inari is left out: {done.stderr.splitlines()[-1:]}", file=sys.stderr)
-        return None
-    return float(done.stdout) * 1e-9
+    return float(done.stdout) if done.returncode == 0 else None

@@ -1,12 +1,11 @@
 """Recordings for the comparison: copies of a data set, and arms of other numbers of joints."""
 
 import csv
+import itertools
 import math
 import shutil
 import subprocess
 from pathlib import Path
-
-COPIES = 30
 
 
 def base(reachtube, root, folder):
@@ -22,23 +21,47 @@ def base(reachtube, root, folder):
     return made
 
 
-def copies(data, out, count, are_split):
-    """Copies the suites of a data set `count` times under new names. The copies of a suite are one
-    suite, or each a suite of its own. Returns the folder."""
-    if (out / "runs.csv").exists():
-        return out
-    with open(data / "runs.csv", newline="") as file:
-        runs = [run for run in csv.DictReader(file) if run["suite"]]
-    listed = []
-    for copy in range(count):
-        for run in runs:
-            suite = f"{run['suite']}{copy:02}" if are_split else run["suite"]
-            file = f"{suite}/{Path(run['file']).stem}_{copy:02}.csv"
-            (out / suite).mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(data / run["file"], out / file)
-            listed.append([file, suite])
-    write_index(out, listed)
+def suites_of(data, out, count):
+    """Copies the suites of a data set `count` times, each a suite of its own. Returns the
+    folder."""
+    if not (out / "runs.csv").exists():
+        copied = [
+            (run["file"], f"{run['suite']}{copy:02}", copy)
+            for copy in range(count) for run in recorded(data)
+        ]
+        copy_runs(data, out, copied)
     return out
+
+
+def runs_of(data, out, count):
+    """Makes a data set of `count` runs in the suites of a data set, which are taken in turn, by
+    copies of it. Returns the folder."""
+    if not (out / "runs.csv").exists():
+        suites = {}
+        for run in recorded(data):
+            suites.setdefault(run["suite"], []).append(run["file"])
+        turns = itertools.zip_longest(*suites.values())
+        each = [run for turn in turns for run in zip(turn, suites) if run[0]]
+        copied = [(*each[at % len(each)], at // len(each)) for at in range(count)]
+        copy_runs(data, out, copied)
+    return out
+
+
+def copy_runs(data, out, copied):
+    """Copies recordings, each given by its file, its new suite and the number of the copy."""
+    listed = []
+    for file, suite, copy in copied:
+        to = f"{suite}/{Path(file).stem}_{copy:02}.csv"
+        (out / suite).mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(data / file, out / to)
+        listed.append([to, suite])
+    write_index(out, listed)
+
+
+def recorded(data):
+    """Returns the runs of a data set that belong to a suite."""
+    with open(data / "runs.csv", newline="") as file:
+        return [run for run in csv.DictReader(file) if run["suite"]]
 
 
 def write_index(out, listed):

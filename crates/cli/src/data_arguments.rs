@@ -18,7 +18,7 @@ pub(crate) struct DataArguments {
     /// Test suites to use, separated by commas, such as A*,B? [default: all]
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', value_parser = trimmed)]
     pub suites: Vec<String>,
-    /// Meaning of the recorded torques; a model file has its own
+    /// Meaning of the recorded torques
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
     /// Time after the first sample up to which samples are used, above 0 s [default: all]

@@ -23,6 +23,15 @@ pub(crate) enum Error {
         /// The name it has, without dashes, with its value if the old option had none.
         new: &'static str,
     },
+    /// A key of the settings was given as an option.
+    #[error(
+        "--{key} is no option, but {key} is a key of the settings: write it to a file, and give \
+         the file with --settings; choices.toml, which this command writes, has all keys"
+    )]
+    InSettings {
+        /// The key.
+        key: String,
+    },
     /// A settings file is not TOML.
     #[error("{}: {message}", path.display())]
     SettingsSyntax {
@@ -229,7 +238,7 @@ impl Error {
     /// Returns what the error is about, as `--json` prints it.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
-            Self::Usage(_) | Self::Renamed { .. } => "usage",
+            Self::Usage(_) | Self::Renamed { .. } | Self::InSettings { .. } => "usage",
             Self::Output(_) => "file",
             Self::Refused { .. } | Self::Sample { .. } => "recordings",
             Self::Pipeline(error) => match **error {

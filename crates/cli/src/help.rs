@@ -1,8 +1,8 @@
 //! Help on one screen: usage, an example, and the options used most. `--help-all` has the rest.
 //!
-//! Each command defines one text of examples and remarks after its options, which the reference
-//! and the manual pages print as it is. Here it becomes the two screens. Options that are rare are
-//! hidden from the first by `hide_short_help` where they are defined.
+//! Each command defines one text of examples and remarks after its options. The manual pages print
+//! it as it is, and the reference its exit codes. Here it becomes the two screens. Options that are
+//! rare are hidden from the first by `hide_short_help` where they are defined.
 
 use std::ffi::OsString;
 use std::fmt::Write;

@@ -24,7 +24,7 @@ const GLOBAL: &str = "Global options";
 const SHARED: &str = "Shared options";
 
 /// Number of commands from which on an option's text is printed once.
-const SEVERAL: usize = 3;
+const SEVERAL: usize = 2;
 
 /// Returns the page for a command line that was built.
 pub(crate) fn markdown(command: Command) -> String {
@@ -310,17 +310,16 @@ mod tests {
     use super::{escape, exit_codes, markdown, sentence, wrap};
 
     #[test]
-    fn an_option_of_three_commands_is_printed_once() {
+    fn an_option_of_two_commands_is_printed_once() {
         let arg = |name: &'static str, help: &'static str| Arg::new(name).long(name).help(help);
         let command = |name: &'static str| Command::new(name).arg(arg("lock", "Hold a joint"));
         let all = Command::new("reachtube")
             .subcommand(command("a").arg(arg("out", "A file")))
-            .subcommand(command("b").arg(arg("out", "A file")))
-            .subcommand(command("c").arg(arg("out", "A folder")));
+            .subcommand(command("b").arg(arg("out", "A folder")));
         let page = markdown(all);
         assert_eq!(page.matches("Hold a joint.").count(), 1, "{page}");
-        assert_eq!(page.matches("[Shared options](#shared-options): `--lock`.").count(), 3);
-        assert_eq!(page.matches("A file.").count(), 2);
+        assert_eq!(page.matches("[Shared options](#shared-options): `--lock`.").count(), 2);
+        assert_eq!(page.matches("A file.").count(), 1);
         assert_eq!(page.matches("A folder.").count(), 1);
     }
 

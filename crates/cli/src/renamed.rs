@@ -24,6 +24,20 @@ const RENAMED: &[Renamed] = &[
     Renamed { commands: &["prepare"], old: "logs", new: "data" },
 ];
 
+/// Choices of `model` that its settings name, and no option.
+const CHOICES: &[&str] = &[
+    "cut-off",
+    "identify",
+    "equations",
+    "expansion",
+    "sensor-noise",
+    "largest-ratio",
+    "largest-growth",
+    "largest-outside",
+    "allowance",
+    "pull",
+];
+
 /// Returns the new name of an option of a command, without dashes.
 pub(crate) fn new_name(command: &str, old: &str) -> Option<&'static str> {
     let is_it = |renamed: &&Renamed| renamed.old == old && renamed.commands.contains(&command);
@@ -31,7 +45,8 @@ pub(crate) fn new_name(command: &str, old: &str) -> Option<&'static str> {
 }
 
 /// Returns an error of the command line; an option that has another name now is reported with that
-/// name. `given` is what could be parsed in spite of the error.
+/// name, and one that only settings have with its key. `given` is what could be parsed in spite of
+/// the error.
 pub(crate) fn usage_error(
     error: clap::Error,
     command: &mut Command,
@@ -42,9 +57,11 @@ pub(crate) fn usage_error(
         _ => return Error::Usage(error.format(command)),
     };
     let old = option.trim_start_matches("--").split('=').next().unwrap_or_default();
-    match given.and_then(|given| new_name(&command_path(given), old)) {
-        Some(new) => Error::Renamed { old: old.into(), new },
-        None => Error::Usage(error.format(command)),
+    let path = given.map(command_path).unwrap_or_default();
+    match (new_name(&path, old), CHOICES.contains(&old) && path == "model") {
+        (Some(new), _) => Error::Renamed { old: old.into(), new },
+        (None, true) => Error::InSettings { key: old.into() },
+        (None, false) => Error::Usage(error.format(command)),
     }
 }
 
@@ -62,8 +79,22 @@ fn command_path(mut given: &ArgMatches) -> String {
 mod tests {
     use clap::CommandFactory;
 
-    use super::RENAMED;
+    use reachtube::pipeline::Choices;
+
+    use super::{CHOICES, RENAMED};
     use crate::cli::Cli;
+
+    #[test]
+    fn every_choice_is_a_key_of_the_settings_and_no_option() {
+        let root = Cli::command();
+        let model = root.find_subcommand("model").unwrap();
+        for key in CHOICES {
+            // No choice is a table.
+            let error = Choices::from_toml(&format!("[{key}]")).unwrap_err().to_string();
+            assert!(error.contains("invalid type"), "{key}: {error}");
+            assert!(!model.get_arguments().any(|a| a.get_long() == Some(key)), "--{key}");
+        }
+    }
 
     #[test]
     fn every_new_name_is_an_option_and_no_old_one_is() {

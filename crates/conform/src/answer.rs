@@ -12,6 +12,7 @@ use crate::fit::fit::{Fitted, fit};
 use crate::fit::group::FitSettings;
 use crate::fit::record::FitRecord;
 use crate::model::file::Model;
+use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
@@ -56,6 +57,19 @@ impl Answer {
         let left_out = left_out.filter(|_| asks_rows);
         let found = conform_fitted(&problem, left_out, progress, resume)?;
         Ok(Self { model: Self::model(&problem, &found, record), problem, found })
+    }
+
+    /// Finds the smallest sets and proves them, without a fit, and compares no motion with the sets
+    /// of the others: whoever asks for it does so with models that have seen less of a motion, by
+    /// [`carry_over`](crate::carry_over), and gives them to [`with_left_out`](Self::with_left_out).
+    ///
+    /// # Errors
+    ///
+    /// As [`conform`](crate::conform()).
+    pub fn without_left_out(problem: Problem, progress: &dyn Progress) -> Result<Self> {
+        let not_compared = Some(LeftOutMotions::not_compared(&problem));
+        let found = conform_fitted(&problem, not_compared, progress, None)?;
+        Ok(Self { model: Self::model(&problem, &found, None), problem, found })
     }
 
     /// Returns the model of what was found, with the record of a fit.

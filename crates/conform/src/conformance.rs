@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use reachtube_scalar::rounding::add_down;
+
 use crate::claim::claim::Claim;
 use crate::claim::notion::claim;
 use crate::claim::remote::PointServer;
@@ -23,12 +25,20 @@ use crate::nominal::input_error::InputError;
 use crate::plausibility::{NominalFit, Usefulness, Warning, warnings};
 use crate::program::program::Program;
 use crate::progress::Progress;
+use crate::reach::reach;
 use crate::search::found::{Found, SearchSummary};
 use crate::search::optimality::LARGEST_GAP;
 use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
+use crate::stiction::{Stiction, stiction};
 use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
+
+/// How often U is widened for stiction at most, each time for what the wider sets need more.
+const MOST_WIDENINGS: usize = 8;
+
+/// Factor by which U is widened beyond the friction that was found.
+const WIDENING: f64 = 1.02;
 
 /// The result of [`conform`].
 #[derive(Debug)]
@@ -65,6 +75,8 @@ pub struct Conformance {
     pub allowance_needed: Option<AllowanceNeeded>,
     /// The radii that were added to the smallest X0 and U, 3n; empty if none were.
     pub allowance: Vec<f64>,
+    /// The dry friction that U was widened for, joint by joint; empty without the setting.
+    pub stiction: Vec<Stiction>,
     /// The runs that decide the sets.
     pub deciding_runs: DecidingRuns,
     /// The joints whose motion follows the order of the runs.
@@ -166,7 +178,7 @@ fn conform_claim(
         let (found, calibration) = calibrate(problem, left_out, how)?;
         (found, Some(calibration))
     };
-    judged(problem, found, calibration, Vec::new())
+    judged(problem, found, calibration, Vec::new())?.with_stiction(problem)
 }
 
 /// Proves sets that were found, and says what they say.
@@ -218,6 +230,7 @@ fn judged(
         left_out,
         allowance_needed,
         allowance,
+        stiction: Vec::new(),
         search,
         tight,
         explanations,
@@ -255,13 +268,58 @@ impl Conformance {
     pub(crate) fn widened(self, problem: &Problem, allowance: Vec<f64>) -> Result<Self> {
         check_allowance(&allowance, problem.joints())?;
         let sets = self.sets.widened(&allowance);
+        let allowance = match self.allowance.is_empty() {
+            true => allowance,
+            false => self.allowance.iter().zip(&allowance).map(|(a, b)| add_down(*a, *b)).collect(),
+        };
         let left_out = LeftOutMotions { each: self.left_out, missing: None };
         let linear = problem.dynamics().linear_system();
         let program = linear.map(|_| Program::of_problem(problem)).transpose()?;
         let scale = program.as_ref().map(Program::scale);
         let found = Found { left_out, search: self.search, ..not_smallest(problem, &sets, scale)? };
-        let allowance_needed = self.allowance_needed;
-        Ok(Self { allowance_needed, ..judged(problem, found, self.calibration, allowance)? })
+        let Self { allowance_needed, stiction, .. } = self;
+        let judged = judged(problem, found, self.calibration, allowance)?;
+        Ok(Self { allowance_needed, stiction, ..judged })
+    }
+
+    /// Widens U by the dry friction that is possible where joints may come to rest, if the settings
+    /// ask for it, and proves the wider sets. They reach further, so that more joints may come to
+    /// rest, and U is widened again until it covers these too. Wider sets hold every motion that
+    /// the smallest ones hold, so that bounds for the next motion remain.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`stiction`](crate::stiction()).
+    fn with_stiction(self, problem: &Problem) -> Result<Self> {
+        if !problem.settings().stiction {
+            return Ok(self);
+        }
+        let (n, trust) = (problem.joints(), self.trust.clone());
+        let mut found = self;
+        for round in 0..=MOST_WIDENINGS {
+            let reached = reach(problem, &found.tube)?;
+            found.stiction = stiction(problem, &found.sets, &found.allowance, &reached);
+            let allowed = |joint: usize| found.allowance.get(2 * n + joint).copied().unwrap_or(0.0);
+            let mut more = vec![0.0; 3 * n];
+            for rest in &found.stiction {
+                let joint = rest.joint - 1;
+                // A little more than is needed, since wider sets need a little more.
+                more[2 * n + joint] = match allowed(joint) {
+                    allowed if rest.torque <= allowed => 0.0,
+                    allowed => (WIDENING * rest.torque - allowed).max(0.0),
+                };
+            }
+            let is_open = more.iter().any(|more| *more > 0.0);
+            if !is_open || round == MOST_WIDENINGS || !more.iter().all(|more| *more <= 1e9) {
+                break;
+            }
+            found = found.widened(problem, more)?;
+        }
+        if found.verdict.conformant && !found.allowance.is_empty() {
+            let basis = format!("{}; U was widened for stiction afterwards", trust.basis);
+            found.trust = Trust { basis, ..trust };
+        }
+        Ok(found)
     }
 }
 

@@ -101,6 +101,9 @@ pub enum Error {
          follow the model's equations"
     )]
     Equations,
+    /// U was to cover stiction, and cannot.
+    #[error("U cannot be widened for stiction: {0}")]
+    Stiction(&'static str),
     /// The notion trace was asked of a problem that it is not for.
     #[error("the notion trace {0}")]
     Trace(&'static str),

@@ -1,4 +1,5 @@
 use reachtube_reach::Hyperrectangle;
+use reachtube_scalar::rounding::add_up;
 use serde::{Deserialize, Serialize};
 
 /// The uncertainty sets of a model.
@@ -42,13 +43,13 @@ impl UncertaintySets {
         if input_only { self.with_input_scaled(factor) } else { self.inflated(factor, 0.0) }
     }
 
-    /// Returns the sets with radii added to X0 and U, 3n, rounded to nearest.
+    /// Returns the sets with radii added to X0 and U, 3n, rounded up.
     #[must_use]
     pub(crate) fn widened(&self, allowance: &[f64]) -> Self {
         let mut wider = self.clone();
         let UncertaintySets { initial_set, input_set, .. } = &mut wider;
         let radii = initial_set.radius.iter_mut().chain(&mut input_set.radius);
-        radii.zip(allowance).for_each(|(radius, more)| *radius += more);
+        radii.zip(allowance).for_each(|(radius, more)| *radius = add_up(*radius, *more));
         wider
     }
 

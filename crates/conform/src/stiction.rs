@@ -9,21 +9,24 @@ use reachtube_recordings::Torque;
 use reachtube_robot::friction::{Friction, Viscous};
 use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::Interval;
+use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
 use crate::reach::SuiteReach;
 use crate::sets::UncertaintySets;
 
-/// A joint whose velocity may be zero in a reachable set, and its dry friction there.
-#[derive(Debug, Clone, PartialEq)]
+/// A joint whose dry friction may differ between motions in a reachable set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Stiction {
-    /// Index of the joint, from 0.
+    /// The joint, from 1.
     pub joint: usize,
     /// Number of steps in which the velocity may be zero.
     pub steps: usize,
-    /// Largest difference between two values of dry friction in one of these steps \[N m; N\].
+    /// Largest difference between two values of dry friction in one step \[N m; N\].
     pub torque: f64,
-    /// Largest torque that U contains in both directions \[N m; N\]; 0 if there is none.
+    /// Largest torque that U contains in both directions, or by which it was widened if the
+    /// settings asked for it \[N m; N\]; 0 if there is none.
     pub room: f64,
     /// The suite or run in which the difference is the largest.
     pub case: String,
@@ -32,34 +35,38 @@ pub struct Stiction {
 }
 
 impl Stiction {
-    /// Returns whether U covers every dry friction that is possible where the velocity may be zero.
+    /// Returns whether U covers every dry friction that is possible in one step.
     #[must_use]
     pub fn is_covered(&self) -> bool {
         self.torque <= self.room
     }
 }
 
-/// Returns the joints whose velocity may be zero in a step of these reachable sets, from base to
-/// tip; none for link torques, which friction is no part of.
+/// Returns the joints whose dry friction may differ between motions in a step of these reachable
+/// sets, from base to tip; none for link torques, which friction is no part of. `allowance` has the
+/// radii that were added to X0 and U, 3n, or none.
 ///
 /// # Guarantee
 ///
-/// Outer, directed rounding, for the robot's constants as loaded: if a joint is covered, the input
-/// of every motion in the sets, with any dry friction that is possible there, lies in U around an
-/// input whose dry friction was taken off at a state of the same step. A disturbance that is held
-/// over steps covers friction as far as it is held over them, and a constant one covers nothing.
-/// The law of warming is not part of it.
+/// Outer, directed rounding, for the robot's constants as loaded: dry friction is taken off the
+/// recorded torque at a state of a step, in the reachable set widened by V, or at the nominal one.
+/// For every other state of the same step, whose friction is any that is possible there, both
+/// values differ by at most `torque`. A joint is covered if U contains this difference; after
+/// [`Settings::stiction`](crate::Settings::stiction), if U contains it beside any input of the set
+/// before. A disturbance that is held over each sample covers friction as far as friction is held
+/// over it, and a constant one covers nothing. The law of warming is not part of it.
 #[must_use]
 pub fn stiction(
     problem: &Problem,
     sets: &UncertaintySets,
+    allowance: &[f64],
     reached: &[SuiteReach],
 ) -> Vec<Stiction> {
     if problem.settings().torque == Torque::Link {
         return Vec::new();
     }
-    let robot = problem.robot();
-    let mut search = Search::new(robot, sets);
+    let allowance = problem.settings().stiction.then_some(allowance);
+    let mut search = Search::new(problem.robot(), sets, allowance);
     for reach in reached {
         for k in 0..reach.tube.len() {
             search.step(reach, k);
@@ -72,25 +79,36 @@ pub fn stiction(
 struct Search<'a> {
     robot: &'a Robot,
     dry: Vec<Friction>,
+    noise: Vec<Interval>,
     room: Vec<f64>,
     ws: Workspace<Interval>,
+    states: Vec<Interval>,
     load: Vec<Interval>,
     found: Vec<Option<Stiction>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(robot: &'a Robot, sets: &UncertaintySets) -> Self {
+    fn new(robot: &'a Robot, sets: &UncertaintySets, allowance: Option<&[f64]>) -> Self {
         let n = robot.joint_count();
         let dry = |friction: Friction| Friction { viscous: Viscous::default(), ..friction };
         let room = |j: usize| {
             let [centre, radius] = [sets.input_set.centre[j].abs(), sets.input_set.radius[j]];
-            (Interval::point(radius) - Interval::point(centre)).lo().max(0.0)
+            match allowance {
+                Some(allowance) => allowance.get(2 * n + j).copied().unwrap_or(0.0),
+                None => (Interval::point(radius) - Interval::point(centre)).lo().max(0.0),
+            }
+        };
+        let noise = |i: usize| {
+            let radius = sets.noise_radius(i);
+            Interval::point(-radius).hull(Interval::point(radius))
         };
         Self {
             robot,
             dry: robot.joints().iter().map(|joint| dry(joint.friction)).collect(),
+            noise: (0..2 * n).map(noise).collect(),
             room: (0..n).map(room).collect(),
             ws: Workspace::new(robot),
+            states: vec![Interval::ZERO; 2 * n],
             load: vec![Interval::ZERO; n],
             found: vec![None; n],
         }
@@ -98,25 +116,28 @@ impl<'a> Search<'a> {
 
     /// Takes in the step from sample `k` on.
     fn step(&mut self, reach: &SuiteReach, k: usize) {
-        let (q, qd) = reach.tube.bounds(k).split_at(self.load.len());
-        if !qd.iter().any(|velocity| velocity.contains_zero()) {
-            return;
+        let nominal = &reach.nominal[k * self.states.len()..];
+        for (i, state) in self.states.iter_mut().enumerate() {
+            let reached = reach.tube.bounds(k)[i] + self.noise[i];
+            *state = reached.hull(Interval::point(nominal[i]));
         }
+        let (q, qd) = self.states.split_at(self.load.len());
         let (sin, cos) = self.robot.sin_cos(q);
         self.robot.gravity(&sin, &cos, &mut self.ws, &mut self.load);
-        for (joint, velocity) in qd.iter().enumerate().filter(|(_, qd)| qd.contains_zero()) {
-            let range = self.dry[joint].range_near_zero(self.load[joint], *velocity);
-            let torque = range.width();
+        for (j, velocity) in qd.iter().enumerate() {
+            let range = self.dry[j].range_near_zero(self.load[j], *velocity);
+            let torque = range.width().min(f64::MAX);
             if torque == 0.0 {
                 continue;
             }
-            let steps = self.found[joint].as_ref().map_or(0, |known| known.steps) + 1;
-            match &mut self.found[joint] {
+            let steps = self.found[j].as_ref().map_or(0, |known| known.steps)
+                + usize::from(velocity.contains_zero());
+            match &mut self.found[j] {
                 Some(known) if known.torque >= torque => known.steps = steps,
                 found => {
-                    let (room, time) = (self.room[joint], reach.times[k]);
+                    let (room, time) = (self.room[j], reach.times[k]);
                     let case = reach.name();
-                    *found = Some(Stiction { joint, steps, torque, room, case, time });
+                    *found = Some(Stiction { joint: j + 1, steps, torque, room, case, time });
                 }
             }
         }

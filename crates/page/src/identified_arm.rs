@@ -22,6 +22,10 @@ const SMALL: f64 = 1e-6;
 /// Part of the robot's size below which two points are one.
 const SAME: f64 = 1e-3;
 
+/// Width of a character and distance of two lines of names \[px\].
+const CHARACTER: f64 = 6.2;
+const LINE: f64 = 13.0;
+
 /// Grey.
 const LINK: RGBColor = RGBColor(160, 168, 178);
 /// Blue.
@@ -132,22 +136,48 @@ fn draw_view(canvas: &Canvas, axes: &[Axis], view: View, title: &str) -> DrawRes
 
 /// Writes the names of the joints beside their axes; joints at one place share a line.
 fn names(canvas: &Canvas, axes: &[Axis], scale: &Scale) -> DrawResult {
-    let mut lines: Vec<((i32, i32), String)> = Vec::new();
+    let mut lines: Vec<((i32, i32), Vec<&str>)> = Vec::new();
     for axis in axes {
         let (x, y) = scale.pixel(&axis.point);
         let same = lines.iter_mut().find(|((_, other), _)| (other - y).abs() < units(9.0));
         match same {
-            Some((place, line)) => {
+            Some((place, names)) => {
                 place.0 = place.0.max(x);
-                *line += &format!(", {}", axis.joint.name);
+                names.push(&axis.joint.name);
             }
-            None => lines.push(((x, y), axis.joint.name.clone())),
+            None => lines.push(((x, y), vec![&axis.joint.name])),
         }
     }
     let style = starting(font(11.0, FontStyle::Normal));
-    lines.iter().try_for_each(|((x, y), line)| {
-        canvas.draw_text(&clean(line), &style, (x + units(16.0), *y))
-    })
+    let end = units(VIEW[0] - 4.0);
+    for ((x, y), names) in lines {
+        let rows = rows(&names);
+        let width = |row: &str| units(CHARACTER * row.chars().count() as f64);
+        let beside = x + units(16.0);
+        // Names that do not fit beside the axis are written above it.
+        let are_above = rows.len() > 1 || rows.iter().any(|row| beside + width(row) > end);
+        for (k, row) in rows.iter().rev().enumerate() {
+            let up = if are_above { units(24.0 + LINE * k as f64) } else { 0 };
+            let left = beside.min(end - width(row));
+            canvas.draw_text(&clean(row), &style, (left, y - up))?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes names as rows that are no wider than a view.
+fn rows(names: &[&str]) -> Vec<String> {
+    let most = ((VIEW[0] - 8.0) / CHARACTER) as usize;
+    let mut rows: Vec<String> = Vec::new();
+    for name in names {
+        match rows.last_mut() {
+            Some(row) if row.chars().count() + name.chars().count() + 2 <= most => {
+                *row += &format!(", {name}");
+            }
+            _ => rows.push((*name).to_string()),
+        }
+    }
+    rows
 }
 
 /// The map from the base's frame to a view.
@@ -185,6 +215,15 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_that_share_a_place_fit_into_the_view() {
+        let names = ["shoulder_pan_joint", "shoulder_lift_joint", "elbow_joint", "wrist_1_joint"];
+        let rows = rows(&names);
+        assert_eq!(rows.concat().matches("_joint").count(), 4);
+        assert!(rows.len() == 2 && rows.iter().all(|row| row.len() <= 60), "{rows:?}");
+        assert_eq!(super::rows(&["a", "b"]), ["a, b"]);
+    }
 
     #[test]
     fn the_axes_are_those_of_the_lwa_4p() {

@@ -187,11 +187,17 @@ fn view<'a>(worst: &'a Verification, page: &VerifyPage<'a>) -> View<'a> {
         let q = states.get(k * width..k * width + body.joint_count());
         q.map_or_else(Vec::new, |q| numbers(&body.placed(q)))
     };
+    let found = worst.closest.as_ref();
+    let found_at = |time: f64| {
+        found.map_or_else(Vec::new, |found| {
+            numbers(&body.placed(&found.at(time)[..body.joint_count()]))
+        })
+    };
     let frame = |k: usize| Frame {
         time: reach.times[k],
         swept: numbers(occupancy.step(k)),
         nominal: at(&reach.nominal, k),
-        closest: worst.closest.as_ref().map_or_else(Vec::new, |found| at(&found.states, k)),
+        closest: found_at(reach.times[k]),
     };
     let stride = occupancy.len().div_ceil(FRAMES).max(1);
     let frames: Vec<Frame> = (0..occupancy.len()).step_by(stride).map(frame).collect();
@@ -200,11 +206,12 @@ fn view<'a>(worst: &'a Verification, page: &VerifyPage<'a>) -> View<'a> {
         let occupancy = body.occupancy(&stop.times, &stop.tube);
         let stride = occupancy.len().div_ceil(FRAMES / 3).max(1);
         let start = reach.times.iter().position(|time| time >= from).unwrap_or(0);
+        let is_found = found.and_then(|found| found.stop.as_ref()).is_some_and(|s| s.from == *from);
         let frame = |k: usize| Frame {
             time: from + stop.times[k],
             swept: numbers(occupancy.step(k)),
             nominal: at(&reach.nominal, start),
-            closest: Vec::new(),
+            closest: if is_found { found_at(from + stop.times[k]) } else { Vec::new() },
         };
         (0..occupancy.len()).step_by(stride).map(frame).collect()
     });
@@ -212,15 +219,19 @@ fn view<'a>(worst: &'a Verification, page: &VerifyPage<'a>) -> View<'a> {
     let is_link = |k: &usize| {
         pair.is_some_and(|(link, _)| body.joint_name(body.capsules()[*k].joint) == link)
     };
-    let time = worst.closest.as_ref().map(|found| found.time);
+    let time = found.map(|found| found.time);
     let time = time.or_else(|| Some(worst.clearances.first()?.time)).unwrap_or(0.0);
+    let before = |frames: &[Frame]| frames.iter().rposition(|frame| frame.time <= time);
+    // A witness that is stopped comes closest in the stop.
+    let in_stop = found.and_then(|found| found.stop.as_ref()).and_then(|_| before(&stop));
+    let first = in_stop.map_or_else(|| before(&frames).unwrap_or(0), |k| frames.len() + k);
     let data = |obstacle: &'a Obstacle| ObstacleData {
         name: &obstacle.name,
         solid: &obstacle.solid,
         speed: obstacle.speed,
     };
     View {
-        first: frames.iter().rposition(|frame| frame.time <= time).unwrap_or(0),
+        first,
         frames,
         stop,
         obstacles: scene.obstacles.iter().map(data).collect(),

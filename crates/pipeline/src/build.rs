@@ -1,8 +1,9 @@
 use std::path::Path;
 
-use reachtube_conform::settings::{Equations, NominalStart};
+use reachtube_conform::result::Severity;
+use reachtube_conform::settings::Equations;
 use reachtube_conform::{Answer, Finding, FitSettings, Progress};
-use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
+use reachtube_identify::prepare::{PrepareSettings, RawLog};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
@@ -10,15 +11,13 @@ use crate::allowance::Widened;
 use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_RATIO};
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
-use crate::cut::rounded;
 use crate::error::{Error, Result};
-use crate::findings::unless_accepted;
+use crate::findings::{impossible_links, unless_accepted};
+use crate::first_choices::first_choices;
 use crate::held_out::Split;
 use crate::horizon::{HorizonWidths, longest, try_horizons};
 use crate::journal::{Journal, digest};
-use crate::mean_position::mean_position;
 use crate::motors::unknown_motors;
-use crate::noise::noise;
 use crate::remedies::TooWide;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::Sorted;
@@ -122,6 +121,7 @@ impl Decided<'_> {
         let Nominal { robot, logs, findings, is_identified, .. } = chosen;
         let mut findings = unless_accepted(findings, given);
         findings.extend(unknown_motors(&robot, torque));
+        findings.extend(impossible_links(self.robot));
         let has_folds = is_identified && torque != Torque::Compensated;
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
         let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
@@ -136,7 +136,9 @@ impl Decided<'_> {
         answer.model = answer.model.with_preparation(preparation(choices, torque));
         let wide =
             TooWide { given, choices, trial: &trial, recordings: &recordings, horizons: &horizons };
-        let remedies = match choices.accept(&answer.model) {
+        // What contradicts the robot is to be mended first: no choice can.
+        let is_contradicted = findings.iter().any(|found| found.severity == Severity::Failure);
+        let remedies = match is_contradicted || choices.accept(&answer.model) {
             true => Vec::new(),
             false => wide.remedies(self.evidence, self.robot)?,
         };
@@ -167,63 +169,6 @@ impl Decided<'_> {
     }
 }
 
-/// Chooses the filter, the model of deviations about the mean of the motion, and what the noise of
-/// the sensors is. Returns them with the cut-off, Hz, for `robot` as described.
-fn first_choices<'a, 'b: 'a>(
-    chooser: &mut Chooser<'b>,
-    journal: &'a Journal<'a>,
-    robot: &Robot,
-    torque: Torque,
-    raw: &[&RawLog],
-    settings: &PrepareSettings,
-) -> Result<(Trial<'a>, f64)> {
-    let given = chooser.choices.clone();
-    let is_filtered = torque != Torque::Compensated;
-    let cut_off = cut_off(raw, &PrepareSettings { cut_off: given.cut_off, ..settings.clone() })?;
-    let cut_off = rounded(cut_off);
-    if is_filtered {
-        chooser.choose(
-            "cut-off",
-            format!("{cut_off} Hz"),
-            "1.5 times the bandwidth of the motions beyond their noise",
-        );
-        chooser.choices.cut_off = Some(cut_off);
-    }
-    let expansion = given.expansion.unwrap_or_else(|| mean_position(raw));
-    chooser.choose("expansion", list(&expansion), "the mean position of the motions");
-    chooser.choices.expansion = Some(expansion.clone());
-    let measured = || noise(raw, is_filtered.then_some(cut_off));
-    let sensor_noise = given.sensor_noise.unwrap_or_else(measured);
-    let why = match is_filtered {
-        true => "5 standard deviations before the filter, lessened by what the filter takes",
-        false => "5 standard deviations",
-    };
-    let (q, qd) = sensor_noise.split_at(sensor_noise.len() / 2);
-    let most = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
-    let value = format!("up to {:.1e} rad and {:.1e} rad/s", most(q), most(qd));
-    chooser.choose("sensor-noise", value, why);
-    chooser.choices.sensor_noise = Some(sensor_noise.clone());
-    let equations = given.equations.unwrap_or(Equations::Robot);
-    let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
-    let robot = robot.clone();
-    let (allowance, fit, progress) = (given.allowance, None, chooser.progress);
-    let trial = Trial {
-        robot,
-        expansion,
-        sensor_noise,
-        equations,
-        nominal,
-        allowance,
-        largest_outside: chooser.choices.largest_outside(),
-        largest_growth: chooser.choices.largest_growth.unwrap_or(LARGEST_GROWTH),
-        folds: &[],
-        fit,
-        progress,
-        journal,
-    };
-    Ok((trial, cut_off))
-}
-
 /// Chooses the fit and the horizon, and finds the sets.
 fn sets(
     chooser: &mut Chooser,
@@ -248,7 +193,7 @@ fn sets(
     chooser.choices.fit = Some(groups);
     if fit.is_some() {
         trial.fit = fit;
-        horizons = try_horizons(trial, recordings)?;
+        horizons = try_horizons(&trial.of_horizons(chooser.choices.horizon), recordings)?;
     }
     let (found, horizon, reason) = match chooser.choices.horizon {
         Some(horizon) => {
@@ -316,7 +261,7 @@ fn choose_equations(
 ) -> Result<Vec<HorizonWidths>> {
     let given = chooser.choices.equations;
     let grown = |equations: Equations| {
-        let trial = Trial { equations, ..trial.clone() };
+        let trial = Trial { equations, ..trial.of_horizons(chooser.choices.horizon) };
         let horizons = try_horizons(&trial, recordings)?;
         let widths = longest(&horizons, largest).clone();
         Ok::<_, Error>((horizons, widths))
@@ -393,8 +338,4 @@ fn reason_of_horizon(
 /// Returns a ratio in percent.
 pub(crate) fn percent(ratio: f64) -> String {
     if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "of no bounded size".into() }
-}
-
-fn list(values: &[f64]) -> String {
-    values.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }

@@ -13,6 +13,12 @@ impl Built {
         [self.findings.clone(), self.answer.findings(), self.remedies.clone()].concat()
     }
 
+    /// Returns whether the recordings contradict the robot, so that the model is not acceptable.
+    #[must_use]
+    pub fn is_contradicted(&self) -> bool {
+        self.contradiction().is_some()
+    }
+
     /// Returns the contradiction for which the model is not acceptable, if there is one.
     #[must_use]
     pub(crate) fn contradiction(&self) -> Option<&Finding> {

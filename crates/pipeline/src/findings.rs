@@ -4,6 +4,7 @@ use reachtube_conform::Finding;
 use reachtube_conform::next_motion::LeftOut;
 use reachtube_conform::result::{Code, Severity};
 use reachtube_identify::{Implausible, WrongColumns};
+use reachtube_robot::Robot;
 
 use crate::choices::Choices;
 
@@ -22,6 +23,22 @@ pub(crate) fn implausible(result: &Implausible) -> Finding {
         text += "; or the description is of another robot";
     }
     Finding { severity, ..contradiction(&text) }
+}
+
+/// Makes the warning that links of a description have inertias that no body has, if some have.
+pub(crate) fn impossible_links(robot: &Robot) -> Option<Finding> {
+    let links = robot.description().impossible_links();
+    let text = format!(
+        "no body has the mass and inertia of the links that {} move: only the geometry of the \
+         description is used",
+        links.join(", ")
+    );
+    let place = Some(links.join(", "));
+    (!links.is_empty()).then(|| Finding {
+        severity: Severity::Warning,
+        place,
+        ..contradiction(&text)
+    })
 }
 
 /// Makes the warning that no allowance of the sets encloses a motion that was left out.

@@ -12,6 +12,7 @@ mod cut;
 mod error;
 mod files;
 mod findings;
+mod first_choices;
 mod fold;
 mod held_out;
 mod horizon;

@@ -74,34 +74,41 @@ pub(crate) fn contradictions(
     let is_explained = |joint: &usize| fit(*joint).value.abs() > OPPOSITE;
     let explained = Explained { joints: (0..n).filter(is_explained).count(), of: n };
     let mut found = Vec::new();
-    for joint in (0..n).filter(|joint| fit(*joint).value < -OPPOSITE) {
-        let name = &robot.joints()[joint].name;
-        let text = format!(
-            "the torque of {name} is opposite to what the description needs: its sign may be wrong"
-        );
-        found.push(Finding { place: Some(name.clone()), ..contradiction(&text) });
-    }
-    let own = (0..n).map(fit).filter(|own| own.value > OPPOSITE);
-    let mut gains: Vec<f64> = own.map(|own| own.gain).collect();
+    // The size of all torques comes first: a sign is about one joint.
+    let own = (0..n).map(fit).filter(|own| own.value.abs() > OPPOSITE);
+    let mut gains: Vec<f64> = own.map(|own| own.gain.abs()).collect();
     gains.sort_by(f64::total_cmp);
     let median = gains.get(gains.len() / 2).copied().unwrap_or(1.0);
     if !(1.0 / FACTOR..=FACTOR).contains(&median) {
+        found.push(wrong_size(median));
+    }
+    let opposite = (0..n).filter(|joint| fit(*joint).value < -OPPOSITE);
+    let names: Vec<&str> = opposite.map(|joint| robot.joints()[joint].name.as_str()).collect();
+    let names = names.join(", ");
+    if !names.is_empty() {
         let text = format!(
-            "the recorded torques are {median:.2} times what the description needs: they may be \
-             currents, or of another unit, or the description may be of another robot"
+            "the torque of {names} is opposite to what the description needs: its sign may be wrong"
         );
-        let remedy = Remedy {
-            setting: "gains".into(),
-            value: String::new(),
-            effect:
-                "turns currents in A into torques by factors in N m/A; factors of 1 state that \
-                     they are torques already."
-                    .into(),
-        };
-        let numbers = [("factor".to_string(), median)].into();
-        found.push(Finding { numbers, remedy: Some(remedy), ..contradiction(&text) });
+        found.push(Finding { place: Some(names), ..contradiction(&text) });
     }
     (found, Some(explained))
+}
+
+/// Makes the finding that torques are `factor` times what a description needs.
+fn wrong_size(factor: f64) -> Finding {
+    let text = format!(
+        "the recorded torques are {factor:.2} times what the description needs: they may be \
+         currents, or of another unit, or the description may be of another robot"
+    );
+    let remedy = Remedy {
+        setting: "gains".into(),
+        value: String::new(),
+        effect: "turns currents in A into torques by factors in N m/A; factors of 1 state that \
+                 they are torques already."
+            .into(),
+    };
+    let numbers = [("factor".to_string(), factor)].into();
+    Finding { numbers, remedy: Some(remedy), ..contradiction(&text) }
 }
 
 /// Returns the joints that move while their torque stays the same in every sample, as a finding.

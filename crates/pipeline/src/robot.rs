@@ -13,7 +13,7 @@ use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::findings::implausible;
+use crate::findings::{contradiction, implausible};
 use crate::held_out::Recording;
 use crate::plausible::{Explained, contradictions, unmeasured};
 use crate::trial::Trial;
@@ -102,7 +102,9 @@ impl Evidence<'_> {
             // Compensated torques are the input of the robot that is described.
             Some((nominal, error)) if given == Some(false) || error < GOOD || is_input => {
                 let left = percent(error);
-                let reason = format!("the description leaves {left} of the torque unexplained");
+                let why = if given.is_some() { "given; " } else { "" };
+                let reason =
+                    format!("{why}the description leaves {left} of the torque unexplained");
                 Ok(Nominal { reason, ..nominal })
             }
             Some((nominal, error)) => self.better(described, nominal, error),
@@ -131,7 +133,8 @@ impl Evidence<'_> {
                     "the description leaves {left} of the torque unexplained, but the robot could \
                      not be identified: {failure}"
                 );
-                return Ok(Nominal { reason, ..nominal });
+                let findings = unexplained_by_any(error).into_iter().collect();
+                return Ok(Nominal { reason, findings, ..nominal });
             }
         };
         let after = self.unexplained(&identified)?;
@@ -259,6 +262,18 @@ impl Evidence<'_> {
         let parts = errors.iter().enumerate().map(|(joint, error)| error / torque(joint).max(1e-9));
         Ok(parts.sum::<f64>() / errors.len() as f64)
     }
+}
+
+/// Makes the finding that a description, which leaves a part of the torque unexplained, explains no
+/// more than a robot that needs no torque, and that no other was found.
+fn unexplained_by_any(part: f64) -> Option<Finding> {
+    let left = percent(part);
+    let text = format!(
+        "the torques are not what this robot needs: its description leaves {left} of them \
+         unexplained, and no robot with these joints was found that explains them; check their \
+         kind, unit and signs, and whether they were measured"
+    );
+    (part >= 1.0).then(|| contradiction(&text))
 }
 
 /// Filters recordings and turns their torques into the input of a robot's model. Torques that are

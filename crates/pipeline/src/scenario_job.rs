@@ -103,11 +103,7 @@ fn verified(
     let opened = job.open(progress)?;
     let robot = opened.problem.robot();
     let rule = scenario.stop(robot, &opened.tube.sets.input_set)?;
-    let mut motions = verify(&opened.problem, &opened.tube, &body, &scene)?;
-    if let Some(rule) = &rule {
-        let stopped = motions.into_iter().map(|one| one.with_stops(robot, (&body, &scene), rule));
-        motions = stopped.collect();
-    }
+    let motions = verify(&opened.problem, &opened.tube, (&body, &scene), rule.as_ref())?;
     Ok(Verified { opened, body, scene, motions })
 }
 
@@ -169,7 +165,7 @@ impl Verified {
     }
 
     /// Returns a simulated motion as CSV, `t,q1,..,qd1,..,tau1,..`, whose torque is the model's
-    /// input.
+    /// input, and that of the drives during a stop.
     fn csv(&self, found: &Witness) -> String {
         let n = self.body.joint_count();
         let names = |kind: &str| (1..=n).map(|i| format!(",{kind}{i}")).collect::<String>();

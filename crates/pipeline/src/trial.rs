@@ -4,7 +4,7 @@ use reachtube_abstraction::ExpansionPoint;
 use reachtube_conform::settings::{Equations, NominalStart};
 use reachtube_conform::{Answer, FitSettings, Job, Noise, Problem, Progress, Settings};
 use reachtube_files::hex;
-use reachtube_recordings::{MemoryRuns, Torque};
+use reachtube_recordings::{MemoryRuns, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
 use sha2::{Digest, Sha256};
 
@@ -64,6 +64,13 @@ impl Trial<'_> {
         OnlyCancels(self.progress)
     }
 
+    /// Returns the trial of several horizons. With the horizon, an allowance is given for that one
+    /// alone, and the others have what they ask for.
+    pub(crate) fn of_horizons(&self, given: Option<f64>) -> Self {
+        let allowance = self.allowance.clone().filter(|_| given.is_none());
+        Self { allowance, ..self.clone() }
+    }
+
     /// Finds the sets for windows.
     ///
     /// # Errors
@@ -71,6 +78,22 @@ impl Trial<'_> {
     /// As [`Job::run`].
     pub(crate) fn run(&self, windows: MemoryRuns) -> Result<Answer> {
         Ok(self.job(windows)?.run(&self.only_cancels())?)
+    }
+
+    /// Finds the sets for windows of which each motion will be [carried over](Self::carried_over),
+    /// so that it is not left out of the sets here.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub(crate) fn run_for_folds(&self, windows: MemoryRuns) -> Result<Answer> {
+        let of_folds = || self.folds.iter().flat_map(|fold| &fold.motions);
+        let motion = |entry: &RunEntry| entry.motion.clone();
+        let is_known = |motion: String| of_folds().any(|known| *known == motion);
+        if self.fit.is_some() || !windows.runs().iter().filter_map(motion).all(is_known) {
+            return self.run(windows);
+        }
+        Ok(Answer::without_left_out(self.read(windows)?, &self.only_cancels())?)
     }
 
     /// Reads windows.

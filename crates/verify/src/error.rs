@@ -39,16 +39,20 @@ pub enum Error {
         /// The remedy.
         remedy: String,
     },
-    /// A link of a URDF has a collision shape from which no capsule is made.
+    /// The collision mesh of a link cannot be used.
     #[error(
-        "link `{link}` has the collision mesh `{mesh}`, from which no capsule is made; give the \
-         link's capsules in a TOML file, or describe its collision by boxes, cylinders or spheres"
+        "the collision mesh `{mesh}` of link `{link}` {problem}; {remedy}, or give the link's \
+         capsules in a TOML file"
     )]
     Mesh {
         /// The link.
         link: String,
-        /// The file of the mesh.
+        /// The file of the mesh, as the URDF names it.
         mesh: String,
+        /// What is wrong with it.
+        problem: String,
+        /// The remedy.
+        remedy: String,
     },
     /// No capsules are known for a robot.
     #[error(

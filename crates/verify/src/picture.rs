@@ -41,17 +41,18 @@ pub fn picture(verification: &Verification, body: &Body, scene: &Scene) -> Strin
         (0..occupancy.len()).step_by(stride).flat_map(|k| occupancy.step(k)).copied().collect();
     let (step, time) = match (closest, clearances.first()) {
         (Some(found), _) => {
-            (reach.times.iter().position(|t| *t >= found.time).unwrap_or(0), found.time)
+            // During a stop, the nominal motion is drawn where the stop began.
+            let from = found.stop.as_ref().map_or(found.time, |stop| stop.from);
+            (reach.times.iter().position(|t| *t >= from).unwrap_or(0), found.time)
         }
         (None, Some(pair)) => (pair.step, pair.time),
         (None, None) => (0, 0.0),
     };
-    let at = |states: &[f64]| {
-        let q = states.get(step * reach.dimension..(step + 1) * reach.dimension);
-        q.map_or_else(Vec::new, |q| body.placed(&q[..body.joint_count()]))
-    };
-    let nominal = at(&reach.nominal);
-    let found = closest.as_ref().map_or_else(Vec::new, |found| at(&found.states));
+    let n = body.joint_count();
+    let nominal = reach.nominal.get(step * reach.dimension..(step + 1) * reach.dimension);
+    let nominal = nominal.map_or_else(Vec::new, |q| body.placed(&q[..n]));
+    let found = closest.as_ref();
+    let found = found.map_or_else(Vec::new, |found| body.placed(&found.at(found.time)[..n]));
     let stopping = stop_swept(verification, body);
     let scale = Scale::around(&[&swept[..], &stopping].concat(), scene);
     let mut svg = format!(

@@ -103,7 +103,8 @@ class Inputs:
             return False
         correction = self.correction or {}
         joints = correction.get("joints", [])
-        by_warmth = any(joint.get("warm_up", 0.0) != 0.0 for joint in joints)
+        kinds = ("warm_up", "warm_up_coulomb")
+        by_warmth = any(joint.get(kind, 0.0) != 0.0 for joint in joints for kind in kinds)
         return by_warmth or self.warms
 
     def _finish(self, case, evaluation):
@@ -183,11 +184,19 @@ class _Evaluation:
             _factors(self.robot.warming(j), j, place, temperatures) for j in range(self.n)
         ]
         self.warms = inputs.warms
-        self.warmth = math.log(place)
+        self.warmth = [math.log(place)] * self.n
+        reference = self.correction.get("reference_temperatures")
+        if reference is not None:
+            known = temperatures or reference
+            self.warmth = [own - other for own, other in zip(known, reference, strict=True)]
         self.jumps = [0.0] * self.n
         joints = self.correction.get("joints", [])
         warm_coulomb = self.warms and self.torque == "compensated"
-        self.loads = warm_coulomb or any(any(j.get("coulomb", ())) for j in joints)
+        self.parts = [
+            [part + own.get("warm_up_coulomb", 0.0) * warmth for part in own.get("coulomb", (0.0,) * 4)]
+            for own, warmth in zip(joints, self.warmth)
+        ]
+        self.loads = warm_coulomb or any(any(parts) for parts in self.parts)
 
     def recorded(self, q, qd, tau):
         """The input of eq. (11) from what was recorded."""
@@ -222,10 +231,10 @@ class _Evaluation:
         for j, terms in enumerate(self.correction["joints"]):
             offset = qd[j] - self.origin[j]
             cubic = terms.get("quadratic", 0.0) + terms.get("cubic", 0.0) * offset
-            u[j] -= cubic * offset * offset + terms.get("warm_up", 0.0) * self.warmth * qd[j]
+            u[j] -= cubic * offset * offset + terms.get("warm_up", 0.0) * self.warmth[j] * qd[j]
             coulomb, viscous = self.factors[j]
             u[j] -= (viscous - 1.0) * viscous_torque(robot.viscous(j), qd[j])
-            parts, coefficients = terms.get("coulomb", (0.0,) * 4), robot.coulomb(j)
+            parts, coefficients = self.parts[j], robot.coulomb(j)
             u[j] -= softened_coulomb_torque(coefficients, loads[j], qd[j], parts)
             if self.warms and self.torque == "compensated":
                 warm = [coulomb * a for a in coefficients]

@@ -66,7 +66,7 @@ pub(crate) struct Arguments {
     /// cores]
     #[arg(long, hide_short_help = true, value_name = "COUNT")]
     pub most_boxes: Option<usize>,
-    /// Write the model to this JSON file
+    /// Write the abstraction to this JSON file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

@@ -4,12 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::Silent;
+use reachtube::conform::Group;
 use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::page::{Assets, built_pages};
 use reachtube::pipeline::{Built, Choice, Choices, build};
 use reachtube::recordings::Torque;
+use reachtube::robot::{Lock, Robot};
 use reachtube::write;
 
+use crate::commands::conform::GROUPS;
 use crate::data_arguments::TORQUES;
 use crate::error::{Error, Result};
 use crate::global::global;
@@ -62,8 +65,16 @@ pub(crate) struct Arguments {
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A [default: 1]
     #[arg(long, value_name = "G,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub gains: Vec<f64>,
+    /// Fit these parameters of the nominal model for small sets, separated by commas; takes minutes
+    #[arg(long, value_name = "GROUP,..", value_delimiter = ',')]
+    #[arg(value_parser = choice::<Group>(GROUPS))]
+    pub fit: Vec<Group>,
     #[command(flatten)]
     pub log: LogArguments,
+    /// Longest time between two samples, above 0 s; the torque is held over it [default: 1.9 times
+    /// the usual sample time, 10 times where sample times jitter]
+    #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
+    pub max_gap: Option<f64>,
     /// Folder for model.json, robot.toml, choices.toml and the page
     #[arg(long, value_name = "FOLDER")]
     pub out: PathBuf,
@@ -72,8 +83,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let choices = choices(args)?;
     let name = choices.robot.clone().ok_or(Error::NoRobot)?;
-    let lock = choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
-    let robot = LockArguments { lock }.load_to_identify(&name)?;
+    let lock: Vec<Lock> = choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
+    let (robot, impossible) = Robot::load_to_identify(&name, &lock)?;
     let torque = choices.torque.ok_or(Error::NoTorque)?;
     if choices.data.is_empty() {
         return Err(Error::NoData);
@@ -89,7 +100,11 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let journal = args.out.join(JOURNAL);
     let built = build(&robot, torque, &choices, Some(&journal), &mut say, &Silent);
     drop(bar);
-    let built = built.inspect_err(|_| forget(&journal))?;
+    let built = built.inspect_err(|_| {
+        // A model that was made says it among its findings.
+        impossible.iter().for_each(|warning| output::warn(warning));
+        forget(&journal);
+    })?;
     output::notes(&built.notes);
     let mut written = Vec::new();
     for (name, text) in built.files() {
@@ -136,6 +151,8 @@ fn choices(args: &Arguments) -> Result<Choices> {
         lock: args.lock.lock.iter().map(ToString::to_string).collect(),
         columns: args.log.columns.clone().unwrap_or_default(),
         log: args.log.settings(),
+        fit: (!args.fit.is_empty()).then(|| args.fit.clone()),
+        max_gap: args.max_gap,
         ..Choices::default()
     }))
 }
@@ -160,6 +177,7 @@ fn summary(built: &Built, written: &[PathBuf], args: &Arguments) -> Summary {
         false => {
             let choices = args.out.join("choices.toml").display().to_string();
             match built.remedies.iter().any(|finding| finding.remedy.is_some()) {
+                _ if built.is_contradicted() => "correct what the first line names".into(),
                 true => format!(
                     "change {choices} so, then `reachtube model --settings {choices} --out FOLDER`"
                 ),

@@ -71,7 +71,7 @@ pub(crate) struct Arguments {
     /// Longest time between two samples, above 0 s [default: 10 times the usual sample time]
     #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
-    /// Folder for the recordings and runs.csv
+    /// Folder for the windows and runs.csv
     #[arg(long, value_name = "FOLDER")]
     pub out: PathBuf,
 }

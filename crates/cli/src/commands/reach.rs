@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use reachtube::conform::model::Provenance;
 use reachtube::conform::result::FrontEnd;
-use reachtube::conform::{Finding, Keep, Model, Stiction, SuiteReach, UncertaintySets, stiction};
+use reachtube::conform::{Finding, Keep, Model, Stiction, SuiteReach, stiction};
 use reachtube::page::{Sources, page};
 use reachtube::write;
 use serde_json::json;
@@ -54,7 +54,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let OpenedCheck { model, problem, .. } = &opened;
     opened.print_notes(&args.model.data);
     let (reach, check) = (opened.reach()?, opened.check()?);
-    let rests = stiction(problem, &sets_of(model), &reach);
+    let mut rests = stiction(problem, &model.sets(), &model.allowance, &reach);
+    rests.retain(|rest| rest.steps > 0);
     let file = |reach, name: String| Written {
         reach,
         samples: args.out.join(format!("{name}.csv")),
@@ -104,17 +105,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
 }
 
-fn sets_of(model: &Model) -> UncertaintySets {
-    UncertaintySets {
-        initial_set: model.initial_set.clone(),
-        input_set: model.input_set.clone(),
-        noise_set: model.noise_set.clone(),
-    }
-}
-
 /// Returns the name of a joint that may come to rest.
 fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
-    &model.robot.joints[rest.joint].name
+    &model.robot.joints[rest.joint - 1].name
 }
 
 fn rest_json(model: &Model, rest: &Stiction) -> serde_json::Value {
@@ -144,15 +137,13 @@ fn rests_text(model: &Model, rests: &[Stiction]) -> String {
         ]
     };
     let rows: Vec<_> = rests.iter().map(row).collect();
-    let open = match rests.iter().all(Stiction::is_covered) {
-        true => "",
-        false => {
-            "U does not cover a joint that sticks where the recorded one moved: for these joints \
-             it covers stiction as far as the recordings show it\n"
-        }
-    };
+    let finding = model.finding_of_stiction(rests).map(|found| format!("{found}\n"));
     let header = ["joint", "steps", "friction differs by", "U allows", "covered"];
-    format!("dry friction where a velocity may be zero [N m]\n{}{open}", table(&header, &rows))
+    format!(
+        "dry friction where a velocity may be zero [N m]\n{}{}",
+        table(&header, &rows),
+        finding.unwrap_or_default()
+    )
 }
 
 impl Written<'_> {

@@ -41,7 +41,7 @@ Exit codes: 0 every stop is proved, 1 a recorded stop is not within the proved o
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
-    /// Brakes: a TOML file with torque and delay
+    /// TOML file with torque and delay
     #[arg(long, value_name = "FILE")]
     pub brakes: PathBuf,
     /// Stop category: 0 drives off and brakes on, 1 after a controlled deceleration

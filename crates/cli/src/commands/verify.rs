@@ -36,7 +36,7 @@ Exit codes: 0 safe, 1 unsafe, 2 error, 3 undecided.";
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Scenario: a TOML file with model, recordings and obstacles
+    /// TOML file with model, recordings and obstacles
     #[arg(value_name = "SCENARIO")]
     pub scenario: PathBuf,
     /// Folder for the page, the pictures and the closest motions

@@ -84,8 +84,33 @@ fn the_same_choices_give_the_same_bytes() {
     lab.write("edited.toml", edited);
     let run = lab.run("model --settings edited.toml --out other").exits(0);
     assert!(run.stderr.contains("held-out: b (given)"), "{}", run.stderr);
-    for file in ["model.json", "robot.toml", "choices.toml"] {
+    let pages = ["page/report.html", "held-out/report.html"];
+    for file in ["model.json", "robot.toml", "choices.toml"].into_iter().chain(pages) {
         assert_eq!(read(&format!("arm/{file}")), read(&format!("again/{file}")), "{file}");
+    }
+}
+
+#[test]
+fn choices_that_are_given_are_taken_and_called_so() {
+    let lab = lab();
+    let given = "robot = \"pendulum.toml\"\ndata = [\"logs\"]\ntorque = \"motor\"\n\
+                 gains = [1.0]\nheld-out = [\"b\"]\ncut-off = 9.0\nidentify = true\n\
+                 equations = \"model\"\nexpansion = [0.25]\nsensor-noise = [0.0003, 0.006]\n\
+                 horizon = 0.2\nallowance = [0.0, 0.0, 0.25]\nfit = [\"viscous\"]\npull = 0.125\n";
+    lab.write("given.toml", given);
+    let run = lab.run("model --settings given.toml --out arm");
+    assert!(run.code != 2, "{run:#?}");
+    for key in ["held-out", "cut-off", "expansion", "sensor-noise", "identify", "equations", "fit"]
+        .into_iter()
+        .chain(["horizon", "allowance"])
+    {
+        let own = run.stderr.lines().find(|line| line.contains(&format!("note: {key}: ")));
+        assert!(own.is_some_and(|line| line.contains("(given")), "{key}: {}", run.stderr);
+    }
+    let written = lab.read("arm/choices.toml");
+    for line in given.lines().filter(|line| !line.starts_with("robot") && !line.starts_with("data"))
+    {
+        assert!(written.lines().any(|own| own == line), "{line} is not in\n{written}");
     }
 }
 

@@ -24,6 +24,15 @@ fn old_options_fail_with_the_new_name() {
 }
 
 #[test]
+fn a_choice_that_is_no_option_is_said_to_be_a_key() {
+    let lab = Lab::new();
+    let words = "--cut-off is no option, but cut-off is a key of the settings";
+    lab.run("model --robot arm.toml --cut-off 3 --out out").fails_with(&[words]);
+    // Other commands have no such choice, or have it as an option.
+    lab.run("reach --largest-ratio 3").fails_with(&["unexpected argument '--largest-ratio'"]);
+}
+
+#[test]
 fn old_keys_of_a_settings_file_fail_with_the_new_name() {
     let lab = Lab::new();
     let settings = "robot = \"arm.toml\"\ndata = \"data\"\ntorque = \"motor\"\n";

@@ -236,6 +236,57 @@ fn names_the_cause(robot: &str, logs: &Path, (cause, code, change): (&str, i32, 
 
 #[test]
 #[ignore = "needs the recordings in ../shared"]
+fn raw_logs_of_strangers_end_with_a_reason() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let raw = data.canonicalize().unwrap().join("raw_logs");
+    let lab = Lab::new();
+    let model = |robot: &Path, logs: &str, more: &str, code: i32, cause: &str| {
+        let (robot, logs) = (robot.display(), raw.join(logs));
+        let line = format!("model --robot {robot} --data {} --torque motor", logs.display());
+        let run = lab.run(&format!("{line} --out arm --force {more}")).exits(code);
+        let answer = if code == 2 { &run.stderr } else { &run.stdout };
+        let answer = answer.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(answer.contains(cause), "{cause}: {answer}");
+    };
+    let tiago = raw.join("tiago/tiago_no_hand.urdf");
+    model(&tiago, "tiago", "", 2, "the robot branches");
+    let joints = ["wheel_right_joint", "wheel_left_joint", "head_1_joint", "head_2_joint"];
+    let locks: String = joints.iter().map(|joint| format!(" --lock {joint}=0")).collect();
+    let cause = "not acceptable: The recorded torques are 0.08 times what the description needs";
+    model(&tiago, "tiago", &locks, 3, cause);
+    // Any robot of six joints: the logs are refused before it counts.
+    let arm = data.join("ur10e/ur10e.urdf");
+    model(&arm, "ur3e_rtde", "", 2, "AllJoints_MoveJ_Target.csv:1: the positions are targets only");
+    let currents = "ur3e_rtde/wave_currentData_100v_40a.head.csv";
+    model(&arm, currents, "", 2, "there is no torque, but there are motor currents");
+    let gains = "--gains 10,10,10,9,9,9";
+    model(&arm, currents, gains, 2, "samples are missing there");
+    model(&arm, currents, &format!("{gains} --max-gap 0.024"), 2, "1 of one joint at a time");
+}
+
+#[test]
+#[ignore = "needs the recordings in ../shared"]
+fn inertias_that_no_body_has_are_named_and_identified() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/ur10e");
+    let mut urdf = std::fs::read_to_string(data.join("ur10e.urdf")).unwrap();
+    // A body's moments of inertia fulfil the triangle inequality.
+    for own in ["0.0314743125769", "0.42307374077", "0.110590365764", "0.0051082479567"] {
+        urdf = urdf.replace(&format!("ixx=\"{own}\""), "ixx=\"0.0001\"");
+    }
+    let lab = Lab::new();
+    lab.write("arm.urdf", urdf);
+    let logs = data.join("excitation").canonicalize().unwrap();
+    let line = format!("model --robot arm.urdf --data {} --torque motor --out arm", logs.display());
+    let answer = lab.run(&format!("{line} --json")).exits(0).json();
+    let first = &answer["findings"][0];
+    let links =
+        "shoulder_pan_joint, shoulder_lift_joint, elbow_joint, wrist_1_joint, wrist_2_joint";
+    assert_eq!((&first["place"], &first["severity"]), (&links.into(), &"warning".into()));
+    assert!(first["text"].as_str().unwrap().contains("only the geometry"), "{first}");
+}
+
+#[test]
+#[ignore = "needs the recordings in ../shared"]
 fn recordings_of_two_arms_that_are_made_wrong_are_not_accepted() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let data = data.canonicalize().unwrap();

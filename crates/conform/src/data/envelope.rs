@@ -1,6 +1,9 @@
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
+use crate::data::stored::owners;
 
 /// An envelope: the highest and lowest value over many runs, for each sample and state, and the run
 /// that has it. It takes runs one by one, two envelopes merge into the envelope of the whole, and
@@ -22,8 +25,11 @@ pub struct Envelope {
     dimension: usize,
     upper: Vec<f64>,
     lower: Vec<f64>,
-    upper_run: Vec<u32>,
-    lower_run: Vec<u32>,
+    /// Shared by an envelope and what [`map`](Self::map) makes of it.
+    #[serde(with = "owners")]
+    upper_run: Arc<Vec<u32>>,
+    #[serde(with = "owners")]
+    lower_run: Arc<Vec<u32>>,
 }
 
 impl Envelope {
@@ -62,18 +68,20 @@ impl Envelope {
     pub(crate) fn include_bounds<'a>(&mut self, run: u32, lower: &'a [f64], upper: &'a [f64]) {
         self.extend(upper.len());
         let of_run = |values: &'a [f64]| values.iter().map(move |value| (*value, run));
-        extend_bounds(&mut self.upper, &mut self.upper_run, of_run(upper), |new, old| new >= old);
-        extend_bounds(&mut self.lower, &mut self.lower_run, of_run(lower), |new, old| new <= old);
+        let (highest, lowest) = self.owned();
+        extend_bounds(highest, of_run(upper), |new, old| new >= old);
+        extend_bounds(lowest, of_run(lower), |new, old| new <= old);
     }
 
     /// Merges another envelope of the same states. Ties keep the run of the smaller number,
     /// whatever the order of merging.
     pub fn merge(&mut self, other: &Self) {
         self.extend(other.upper.len());
-        let above = other.upper.iter().zip(&other.upper_run).map(|(value, run)| (*value, *run));
-        extend_bounds(&mut self.upper, &mut self.upper_run, above, |new, old| new >= old);
-        let below = other.lower.iter().zip(&other.lower_run).map(|(value, run)| (*value, *run));
-        extend_bounds(&mut self.lower, &mut self.lower_run, below, |new, old| new <= old);
+        let (highest, lowest) = self.owned();
+        let above = other.upper.iter().copied().zip(other.upper_run.iter().copied());
+        let below = other.lower.iter().copied().zip(other.lower_run.iter().copied());
+        extend_bounds(highest, above, |new, old| new >= old);
+        extend_bounds(lowest, below, |new, old| new <= old);
     }
 
     /// Returns the envelope of `others`, where this one is the envelope of these and of `left_out`.
@@ -82,10 +90,11 @@ impl Envelope {
         let mut rest = Self::new(self.dimension);
         let entries = others.iter().map(|other| other.upper.len()).max().unwrap_or(0);
         rest.extend(entries);
-        rest.upper.copy_from_slice(&self.upper[..entries]);
-        rest.lower.copy_from_slice(&self.lower[..entries]);
-        rest.upper_run.copy_from_slice(&self.upper_run[..entries]);
-        rest.lower_run.copy_from_slice(&self.lower_run[..entries]);
+        let ((upper, upper_run), (lower, lower_run)) = rest.owned();
+        upper.copy_from_slice(&self.upper[..entries]);
+        lower.copy_from_slice(&self.lower[..entries]);
+        upper_run.copy_from_slice(&self.upper_run[..entries]);
+        lower_run.copy_from_slice(&self.lower_run[..entries]);
         for at in 0..entries {
             let reaches = |bounds: fn(&Self) -> &[f64]| {
                 left_out.iter().any(|other| bounds(other).get(at) == Some(&bounds(self)[at]))
@@ -93,15 +102,19 @@ impl Envelope {
             let having = others.iter().filter(|other| at < other.upper.len());
             if reaches(|of| &of.upper) {
                 let bounds = having.clone().map(|of| (of.upper[at], of.upper_run[at]));
-                let (bound, run) = (&mut rest.upper[at..=at], &mut rest.upper_run[at..=at]);
-                (bound[0], run[0]) = (f64::NEG_INFINITY, u32::MAX);
-                bounds.for_each(|one| extend_bounds(bound, run, [one].into_iter(), |x, y| x >= y));
+                (upper[at], upper_run[at]) = (f64::NEG_INFINITY, u32::MAX);
+                let (bound, run) = (&mut upper[at..=at], &mut upper_run[at..=at]);
+                bounds.for_each(|one| {
+                    extend_bounds((&mut *bound, &mut *run), [one].into_iter(), |x, y| x >= y)
+                });
             }
             if reaches(|of| &of.lower) {
                 let bounds = having.map(|of| (of.lower[at], of.lower_run[at]));
-                let (bound, run) = (&mut rest.lower[at..=at], &mut rest.lower_run[at..=at]);
-                (bound[0], run[0]) = (f64::INFINITY, u32::MAX);
-                bounds.for_each(|one| extend_bounds(bound, run, [one].into_iter(), |x, y| x <= y));
+                (lower[at], lower_run[at]) = (f64::INFINITY, u32::MAX);
+                let (bound, run) = (&mut lower[at..=at], &mut lower_run[at..=at]);
+                bounds.for_each(|one| {
+                    extend_bounds((&mut *bound, &mut *run), [one].into_iter(), |x, y| x <= y)
+                });
             }
         }
         rest
@@ -129,7 +142,7 @@ impl Envelope {
 
     /// Returns the runs that have a bound, some of them more than once.
     pub(crate) fn owners(&self) -> impl Iterator<Item = u32> {
-        self.upper_run.iter().chain(&self.lower_run).copied()
+        self.upper_run.iter().chain(self.lower_run.iter()).copied()
     }
 
     /// Returns whether its parts fit together and have states of `dimension` entries.
@@ -169,18 +182,27 @@ impl Envelope {
         if entries > self.upper.len() {
             self.upper.resize(entries, f64::NEG_INFINITY);
             self.lower.resize(entries, f64::INFINITY);
-            self.upper_run.resize(entries, u32::MAX);
-            self.lower_run.resize(entries, u32::MAX);
+            Arc::make_mut(&mut self.upper_run).resize(entries, u32::MAX);
+            Arc::make_mut(&mut self.lower_run).resize(entries, u32::MAX);
         }
     }
+
+    /// Returns the upper and the lower bounds with their runs, to be changed.
+    fn owned(&mut self) -> (Owned<'_>, Owned<'_>) {
+        let Self { upper, lower, upper_run, lower_run, .. } = self;
+        let (of_upper, of_lower) = (Arc::make_mut(upper_run), Arc::make_mut(lower_run));
+        ((upper, of_upper), (lower, of_lower))
+    }
 }
+
+/// Bounds and the runs that have them.
+type Owned<'a> = (&'a mut [f64], &'a mut [u32]);
 
 /// Moves bounds outward where `values` with their runs lie beyond them, and hands bounds that
 /// `values` reach to the run of the smaller number: 0 and -0 are equal, and a bound has the bits of
 /// its run. The pass has no branch, so that the compiler can use vector registers.
 fn extend_bounds(
-    bounds: &mut [f64],
-    runs: &mut [u32],
+    (bounds, runs): Owned<'_>,
     values: impl Iterator<Item = (f64, u32)>,
     reaches: impl Fn(f64, f64) -> bool,
 ) {

@@ -18,9 +18,11 @@ pub(crate) struct Marks {
 impl Marks {
     /// Takes 64 states of a run at most.
     pub(super) fn new(run: &Run) -> Self {
-        let stride = run.len().div_ceil(MOST_MARKS).next_power_of_two();
-        let states = (0..run.len()).step_by(stride).flat_map(|k| run.state(k).iter().copied());
-        Self { stride, states: states.collect(), dimension: 2 * run.joints }
+        let (stride, dimension) =
+            (run.len().div_ceil(MOST_MARKS).next_power_of_two(), 2 * run.joints);
+        let mut states = Vec::with_capacity(run.len().div_ceil(stride) * dimension);
+        (0..run.len()).step_by(stride).for_each(|k| states.extend_from_slice(run.state(k)));
+        Self { stride, states, dimension }
     }
 
     /// Returns whether the states were let go.

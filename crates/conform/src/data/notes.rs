@@ -81,7 +81,9 @@ fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
 
 /// Says where friction depends on a temperature that a recording does not have.
 fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
-    let by_temperature = setup.robot.warms_by().contains(&WarmingBy::Temperature);
+    let is_fitted =
+        setup.correction.as_ref().is_some_and(|known| known.reference_temperatures.is_some());
+    let by_temperature = is_fitted || setup.robot.warms_by().contains(&WarmingBy::Temperature);
     let with: usize = recordings.suites.iter().map(|s| s.totals.with_temperature()).sum();
     let without = recordings.run_count() - with;
     (by_temperature && without > 0).then(|| {

@@ -181,6 +181,10 @@ pub struct Settings {
     /// How far X0 may reach.
     #[serde(default, skip_serializing_if = "is_default")]
     pub initial_limit: InitialLimit,
+    /// Whether U is widened by the dry friction that is possible where joints may come to rest, for
+    /// other motions under the same motor torque.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub stiction: bool,
     /// The weights of the states.
     pub weights: Weights,
     /// The measurement noise.
@@ -224,6 +228,7 @@ impl Settings {
             notion: Notion::default(),
             states: States::default(),
             initial_limit: InitialLimit::default(),
+            stiction: false,
             weights: Weights::default(),
             noise: Noise::default(),
             sensor_noise: None,
@@ -255,6 +260,22 @@ impl Settings {
         }
     }
 
+    /// Checks that U can cover stiction, where it is to.
+    fn check_stiction(&self) -> Result<()> {
+        match (self.torque, self.disturbance) {
+            _ if !self.stiction => Ok(()),
+            (Torque::Link, _) => Err(Error::Stiction(
+                "torques that are measured at the links have no friction of the joints; leave the \
+                 setting out",
+            )),
+            (_, Disturbance::Constant) => Err(Error::Stiction(
+                "friction changes during a motion, and a constant disturbance does not; let it \
+                 change at each sample",
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// Takes model, expansion point and operating box from an abstraction.
     ///
     /// # Errors
@@ -278,8 +299,9 @@ impl Settings {
     /// # Errors
     ///
     /// [`Error::SettingCount`] and [`Error::SettingRange`], which name the setting, its value and
-    /// what it may be.
+    /// what it may be; [`Error::Stiction`] if stiction cannot be covered.
     pub fn validate(&self, joints: usize) -> Result<()> {
+        self.check_stiction()?;
         if let Weights::Given(weights) = &self.weights {
             check_list("weight", weights, 2 * joints, 1e-9..=1e9)?;
         }

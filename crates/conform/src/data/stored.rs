@@ -67,6 +67,20 @@ pub(super) mod values {
     }
 }
 
+/// Runs that have bounds, which envelopes share.
+pub(super) mod owners {
+    use super::*;
+    use std::sync::Arc;
+
+    pub(crate) fn serialize<S: Serializer>(runs: &[u32], out: S) -> Result<S::Ok, S::Error> {
+        runs.serialize(out)
+    }
+
+    pub(crate) fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Arc<Vec<u32>>, D::Error> {
+        Ok(Arc::new(Vec::deserialize(from)?))
+    }
+}
+
 /// A condition with all of its fields.
 pub(super) mod condition {
     use super::*;

@@ -1,6 +1,6 @@
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
@@ -97,10 +97,14 @@ impl SuiteReader<'_> {
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<Suite, Vec<Defect>> {
         let n = self.robot.joint_count();
-        let done = AtomicUsize::new(0);
+        let (done, grids) = (AtomicUsize::new(0), SharedGrids::default());
         let take = |mut part: Part, (place, &index): (usize, &usize)| {
             match self.read_run(index) {
-                Ok((run, input)) => self.take(&mut part, place, index, run, input),
+                Ok((run, input)) => {
+                    let summary = self.summary(index, &run, grids.of(&input.grid));
+                    part.runs.push((place, summary));
+                    self.take(&mut part, index, run, input);
+                }
                 Err(defects) => part.defects.push((place, defects)),
             }
             progress(done.fetch_add(1, Ordering::Relaxed) + 1);
@@ -117,14 +121,15 @@ impl SuiteReader<'_> {
         Ok((run, input))
     }
 
+    fn summary(&self, index: usize, run: &Run, grid: Arc<TimeGrid>) -> RunSummary {
+        RunSummary::new(index, &self.source.runs()[index], run, grid)
+    }
+
     /// Folds one run into `part`. A run is kept when the suite's runs are known to be cases of
     /// their own, or when it may turn out so: the first one, until a second shares its input.
-    fn take(&self, part: &mut Part, place: usize, index: usize, run: Run, input: RunInput) {
+    fn take(&self, part: &mut Part, index: usize, run: Run, input: RunInput) {
         let n = run.joints;
         part.envelope.include(index as u32, &run.states);
-        let entry = &self.source.runs()[index];
-        let summary = RunSummary::new(index, entry, &run, part.grid(&input.grid));
-        part.runs.push((place, summary));
         let is_first = part.is_empty;
         part.share(Some(SharedInput { run: index as u32, input }), n);
         if self.keep_all || self.nominal == NominalStart::Own || part.shared.is_none() {
@@ -173,7 +178,6 @@ struct Part {
     /// The first run, while it is the only one.
     first: Option<(usize, Run)>,
     envelope: Envelope,
-    grids: Vec<Arc<TimeGrid>>,
     defects: Vec<(usize, Vec<Defect>)>,
 }
 
@@ -185,17 +189,8 @@ impl Part {
             is_empty: true,
             first: None,
             envelope: Envelope::new(2 * joints),
-            grids: Vec::new(),
             defects: Vec::new(),
         }
-    }
-
-    fn grid(&mut self, grid: &Arc<TimeGrid>) -> Arc<TimeGrid> {
-        if let Some(known) = self.grids.iter().find(|known| grid.is_prefix_of(known)) {
-            return Arc::clone(known);
-        }
-        self.grids.push(Arc::clone(grid));
-        Arc::clone(grid)
     }
 
     fn share(&mut self, other: Option<SharedInput>, joints: usize) {
@@ -229,5 +224,21 @@ impl Part {
         self.defects.extend(other.defects);
         self.envelope.merge(&other.envelope);
         self
+    }
+}
+
+/// The grids of a suite's runs, of which runs of one rate share one.
+#[derive(Default)]
+struct SharedGrids(Mutex<Vec<Arc<TimeGrid>>>);
+
+impl SharedGrids {
+    /// Returns a known grid that is `grid` or begins with it, or `grid`, which is known from now.
+    fn of(&self, grid: &Arc<TimeGrid>) -> Arc<TimeGrid> {
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(longer) = known.iter().find(|longer| grid.is_prefix_of(longer)) {
+            return Arc::clone(longer);
+        }
+        known.push(Arc::clone(grid));
+        Arc::clone(grid)
     }
 }

@@ -49,6 +49,15 @@ impl Data {
         samples.div_ceil(MOST_SAMPLES).max(1)
     }
 
+    /// Returns the mean temperature of each joint over the cases, n, °C; `None` if it is not known
+    /// for all of them.
+    pub(crate) fn mean_temperatures(&self) -> Option<Vec<f64>> {
+        let of_track = |track: &Track| track.case.condition.temperatures.clone();
+        let all = self.tracks.iter().map(of_track).collect::<Option<Vec<_>>>()?;
+        let mean = |joint: usize| all.iter().map(|own| own[joint]).sum::<f64>() / all.len() as f64;
+        Some((0..all.first()?.len()).map(mean).collect())
+    }
+
     /// Takes the cases of a problem; each run is a case when `by_run`.
     ///
     /// # Errors

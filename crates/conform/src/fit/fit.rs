@@ -71,7 +71,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         return Err(Error::Fit(one_motion(kept.is_some())));
     }
     let speeds = speeds_of_friction(problem, steering, &settings.groups);
-    let parameters = Parameters::new(setup, &settings.groups, &speeds);
+    let parameters = Parameters::new(setup, &settings.groups, &speeds, data.mean_temperatures());
     if parameters.len() == 0 {
         return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
     }
@@ -94,7 +94,8 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let found = search(&fit, &choice)?;
     progress.finished(&format!("the fit took {} steps", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {
-        let own = Parameters::new(problem.setup(), &settings.groups, &speeds);
+        let temperatures = data.mean_temperatures();
+        let own = Parameters::new(problem.setup(), &settings.groups, &speeds, temperatures);
         let mut setup = own.apply(&found.numbers)?;
         if setup.settings.weights == Weights::Spread {
             setup.settings.weights = Weights::Given(fit.weights.clone());
@@ -312,13 +313,18 @@ fn parameters_of(fit: &FitTask, numbers: &[f64], setup: &Setup) -> Vec<FittedPar
         let (identified, fitted, factor) = fit.parameters.values(p, numbers[p]);
         let of_velocity =
             |power| format!("{}/({}){power}", kind.force_unit(), kind.velocity_unit());
+        let by_temperature = fit.parameters.warms_by_temperature();
         let (name, unit) = match quantity {
             Quantity::MotorInertia => ("inertia at the motor", kind.inertia_unit().into()),
             Quantity::Density => ("mass of the link", "kg".into()),
             Quantity::Viscous => ("viscous friction", of_velocity("")),
             Quantity::Cubic => ("cubic friction", of_velocity("³")),
             Quantity::Coulomb(quadrants) => (coulomb_name(quadrants), kind.force_unit().into()),
+            Quantity::WarmUp if by_temperature => {
+                ("viscous friction per K", of_velocity("") + "/K")
+            }
             Quantity::WarmUp => ("viscous friction per unit of ln(run)", of_velocity("")),
+            Quantity::WarmUpCoulomb => ("part of Coulomb friction per K", "1/K".into()),
             Quantity::Payload => ("payload", "kg".into()),
         };
         let (group, joint) = (quantity.group(), joint + 1);

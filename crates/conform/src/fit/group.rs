@@ -19,7 +19,9 @@ pub enum Group {
     /// Coulomb friction of each joint, by quadrant where the quadrants differ, along the nominal
     /// motion.
     Coulomb,
-    /// The change of viscous friction with the order of the runs in their suite.
+    /// The change of viscous and Coulomb friction with the temperature of the joints, where every
+    /// recording has it; else the change of viscous friction with the order of the runs in their
+    /// suite.
     WarmUp,
     /// A point mass at the origin of the last link's frame.
     Payload,

@@ -28,8 +28,10 @@ pub(crate) enum Quantity {
     Cubic,
     /// Coulomb friction in these quadrants: a factor minus 1.
     Coulomb([bool; 4]),
-    /// The change of v1 with ln(run), in parts of v1.
+    /// The change of v1 with the warmth, in parts of v1.
     WarmUp,
+    /// The change of Coulomb friction with the warmth, in parts of it.
+    WarmUpCoulomb,
     /// A mass, kg.
     Payload,
 }
@@ -51,6 +53,8 @@ pub(crate) struct Parameters<'a> {
     inertia: Vec<f64>,
     /// The inertial parameters of each link, 10 n.
     links: Vec<f64>,
+    /// The temperatures above which warm-up counts, n, °C; `None` if it counts by the run.
+    temperatures: Option<Vec<f64>>,
     pub list: Vec<FreeParameter>,
     /// Conditions on friction that could fall with speed.
     pub rising: Vec<RisingFriction>,
@@ -69,6 +73,10 @@ const LEAST_INERTIA: f64 = 0.1;
 /// The largest payload that is tried, kg.
 const LARGEST_PAYLOAD: f64 = 100.0;
 
+/// Numbers of warm-up by temperature change friction by a part per this many K, so that they are as
+/// large as those of warm-up by ln(run).
+const WARMING: f64 = 10.0;
+
 impl Quantity {
     /// Returns the group.
     pub(crate) fn group(self) -> Group {
@@ -77,7 +85,7 @@ impl Quantity {
             Self::Viscous => Group::Viscous,
             Self::Cubic => Group::Cubic,
             Self::Coulomb(_) => Group::Coulomb,
-            Self::WarmUp => Group::WarmUp,
+            Self::WarmUp | Self::WarmUpCoulomb => Group::WarmUp,
             Self::Payload => Group::Payload,
         }
     }
@@ -86,13 +94,19 @@ impl Quantity {
 impl<'a> Parameters<'a> {
     /// Lists the parameters of `groups` that the robot has. Without a velocity limit, friction must
     /// rise up to twice the highest speed of each joint in the recordings, `speeds`, rad/s; no
-    /// speeds for a model whose friction is linear.
-    pub(crate) fn new(setup: &'a Setup, groups: &[Group], speeds: &[f64]) -> Self {
+    /// speeds for a model whose friction is linear. Warm-up counts the temperatures above
+    /// `temperatures`, n, °C, or ln(run) without them.
+    pub(crate) fn new(
+        setup: &'a Setup,
+        groups: &[Group],
+        speeds: &[f64],
+        temperatures: Option<Vec<f64>>,
+    ) -> Self {
         let robot = &setup.robot;
         let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
         let inertia = mass_matrix.diagonal().iter().copied().collect();
         let (links, list) = (robot.inertial_parameters(), Vec::new());
-        let mut parameters = Self { setup, inertia, links, list, rising: Vec::new() };
+        let mut parameters = Self { setup, inertia, links, temperatures, list, rising: Vec::new() };
         for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
             for joint in 0..robot.joint_count() {
                 let of_joint = parameters.of_joint(group, joint);
@@ -158,7 +172,15 @@ impl<'a> Parameters<'a> {
                 if_any(viscous.v2 != 0.0 || viscous.v3 != 0.0, Quantity::Cubic, [-1.0, 5.0])
             }
             Group::Coulomb => self.coulomb(joint),
-            Group::WarmUp => if_any(viscous.v1 > 0.0, Quantity::WarmUp, [-0.9, 2.0]),
+            Group::WarmUp => {
+                // By the run, Coulomb friction warms up as far as the robot's own law has it.
+                let coulomb = self.setup.robot.description().joints[joint].friction.coulomb;
+                let is_coulomb = self.temperatures.is_some() && coulomb != [0.0; 8];
+                let bounds = [-0.9, 2.0];
+                let mut both = if_any(viscous.v1 > 0.0, Quantity::WarmUp, bounds);
+                both.extend(if_any(is_coulomb, Quantity::WarmUpCoulomb, bounds));
+                both
+            }
             Group::Payload => if_any(is_last, Quantity::Payload, [0.0, LARGEST_PAYLOAD]),
         }
     }
@@ -187,7 +209,7 @@ impl<'a> Parameters<'a> {
     pub(crate) fn changes_model(&self, p: usize) -> bool {
         match self.list[p].quantity {
             Quantity::Cubic => self.setup.settings.abstraction.order >= 2,
-            Quantity::Coulomb(_) | Quantity::WarmUp => false,
+            Quantity::Coulomb(_) | Quantity::WarmUp | Quantity::WarmUpCoulomb => false,
             _ => true,
         }
     }
@@ -207,9 +229,20 @@ impl<'a> Parameters<'a> {
                 let a = self.setup.robot.description().joints[joint].friction.coulomb;
                 times(a[2 * first(quadrants)], 1.0 + number)
             }
-            Quantity::WarmUp => (0.0, viscous.v1 * number, None),
+            Quantity::WarmUp => (0.0, viscous.v1 * self.per_warmth(number), None),
+            Quantity::WarmUpCoulomb => (0.0, self.per_warmth(number), None),
             Quantity::Payload => (0.0, number, None),
         }
+    }
+
+    /// Returns whether warm-up counts by temperature.
+    pub(crate) fn warms_by_temperature(&self) -> bool {
+        self.temperatures.is_some()
+    }
+
+    /// Returns the change per unit of warmth that a number of warm-up stands for: per K or ln(run).
+    fn per_warmth(&self, number: f64) -> f64 {
+        if self.warms_by_temperature() { number / WARMING } else { number }
     }
 
     /// Returns the standard error of the identified value of parameter `p`, where the robot's
@@ -266,12 +299,16 @@ impl<'a> Parameters<'a> {
                     let parts = corrected.coulomb.iter_mut().zip(quadrants);
                     parts.filter(|(_, is)| *is).for_each(|(part, _)| *part = number);
                 }
-                Quantity::WarmUp => corrected.warm_up = viscous.v1 * number,
+                Quantity::WarmUp => corrected.warm_up = viscous.v1 * self.per_warmth(number),
+                Quantity::WarmUpCoulomb => corrected.warm_up_coulomb = self.per_warmth(number),
                 Quantity::Payload => {
                     correction.payload = number;
                     links[INERTIAL * joint] += number;
                 }
             }
+        }
+        if self.groups().contains(&Group::WarmUp) {
+            correction.reference_temperatures.clone_from(&self.temperatures);
         }
         for (at, (new, old)) in links.iter().zip(&self.links).enumerate() {
             if new != old {

@@ -136,7 +136,7 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
     let started =
         limits.par_iter().enumerate().map(|(motion, limits)| Fold::new(fit, motion, limits));
     let folds: Vec<Fold> = started.collect::<Result<_>>()?;
-    let identified = Parameters::new(fit.parameters.setup(), &[], &[]);
+    let identified = Parameters::new(fit.parameters.setup(), &[], &[], None);
     let identified = folds.par_iter().map(|Fold { unseen: Unseen { whole, motion }, .. }| {
         let whole = FitTask { parameters: &identified, ..whole.clone() };
         Ok(Unseen { whole, motion: *motion }.compare(&[])?.0)

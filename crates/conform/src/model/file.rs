@@ -34,6 +34,7 @@ use crate::next_motion::without_motion::LeftOut;
 use crate::plausibility::{Usefulness, Warning};
 use crate::search::found::SearchSummary;
 use crate::sets::UncertaintySets;
+use crate::stiction::Stiction;
 use crate::tube::witness::Witness;
 
 /// What the field `format` of every model file says.
@@ -125,6 +126,9 @@ pub struct Model {
     /// The radii that were added to the smallest X0 and U, 3n, in SI units; none if none were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub allowance: Vec<f64>,
+    /// The dry friction that U was widened for, joint by joint; none without the setting.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stiction: Vec<Stiction>,
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
@@ -223,6 +227,7 @@ impl Model {
             trust: found.trust.clone(),
             calibration: found.calibration.clone(),
             allowance: found.allowance.clone(),
+            stiction: found.stiction.clone(),
             left_out: found.left_out.clone(),
             deciding_runs: found.deciding_runs.clone(),
             trends: found.trends.clone(),

@@ -57,6 +57,8 @@ impl Model {
             )
         } else if !self.allowance.is_empty() && check_allowance(&self.allowance, n).is_err() {
             format!("its allowance is not {} radii", 3 * n)
+        } else if self.stiction.iter().any(|rest| !(1..=n).contains(&rest.joint)) {
+            format!("its stiction names a joint that is not one of {n}")
         } else if self.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
             format!("its correction is not one of {n} joints")
         } else if !fits_box {

@@ -17,7 +17,7 @@ impl Program<'_> {
         let unknowns = self.unknowns(sets);
         for index in self.indices(1) {
             let excess = self.excess(index, &unknowns);
-            if self.is_violated(index, excess, &unknowns) {
+            if self.is_missed(index, excess, &unknowns) {
                 let (block, k, i, _) = index;
                 let gains = || (0.0, self.row(block, k, i).1.to_vec());
                 let own = missing.entry((block, k, i)).or_insert_with(gains);

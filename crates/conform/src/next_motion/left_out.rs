@@ -32,6 +32,21 @@ pub(crate) struct LeftOutMotions {
     pub missing: Option<Vec<Missing>>,
 }
 
+impl LeftOutMotions {
+    /// Returns the motions of a linear model whose rows are asked, not compared with anything; no
+    /// motions for any other.
+    pub(crate) fn not_compared(problem: &Problem) -> Self {
+        let motions = Motions::new(problem.recordings()).distinct();
+        let is_linear = problem.dynamics().linear_system().is_some();
+        if motions.len() < 2 || !is_linear || problem.settings().notion.asks_points() {
+            return Self::default();
+        }
+        let each: Vec<_> = motions.iter().map(|motion| LeftOut::unknown(motion, 0)).collect();
+        let missing = vec![Missing::new(); each.len()];
+        Self { each, missing: Some(missing) }
+    }
+}
+
 /// Leaves each motion out of the program that gave the smallest sets, one after the other, and
 /// compares the motion with the sets of the others: with their rows for a linear model, and with
 /// the computed outer sets for any other. Nothing with fewer than two motions, and for other

@@ -6,7 +6,7 @@ use reachtube_recordings::Torque;
 use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
 use crate::data::condition::Condition;
-use crate::data::correction::InputCorrection;
+use crate::data::correction::{InputCorrection, JointCorrection};
 use crate::data::settings::Settings;
 use crate::error::Result;
 
@@ -17,8 +17,10 @@ pub(crate) struct Corrector<'a> {
     correction: Cow<'a, InputCorrection>,
     /// The velocities of the expansion point, n.
     origin: Cow<'a, [f64]>,
-    /// The logarithm of the run's place, in which the correction counts warmth.
-    warmth: f64,
+    /// The warmth of each joint as the correction counts it, n.
+    warmth: Vec<f64>,
+    /// Coulomb friction of each joint beyond the robot's own, in parts of it, n.
+    coulomb: Vec<[f64; 4]>,
     /// The robot as warm as it is in this run, where its own friction changes.
     warm: Option<Robot>,
     /// Whether the recorded input is free of the dry friction of a cold robot.
@@ -45,7 +47,12 @@ impl<'a> Corrector<'a> {
         condition: &Condition,
     ) -> Result<Self> {
         let n = robot.joint_count();
-        let has_coulomb = correction.joints.iter().any(|joint| joint.coulomb != [0.0; 4]);
+        let warmth = correction.warmth(condition);
+        let warm_parts = |(joint, warmth): (&JointCorrection, &f64)| {
+            joint.coulomb.map(|part| part + joint.warm_up_coulomb * warmth)
+        };
+        let coulomb: Vec<_> = correction.joints.iter().zip(&warmth).map(warm_parts).collect();
+        let has_coulomb = coulomb.iter().any(|parts| *parts != [0.0; 4]);
         let unit_payload = match correction.payload {
             0.0 => None,
             _ => Some(Robot::from_description(&only_payload(robot.description()))?),
@@ -55,7 +62,8 @@ impl<'a> Corrector<'a> {
             robot: Cow::Borrowed(robot),
             correction: Cow::Borrowed(correction),
             origin: Cow::Borrowed(&settings.expansion_point.qd),
-            warmth: (condition.place as f64).ln(),
+            warmth,
+            coulomb,
             warm: condition.warm(robot),
             is_compensated: settings.torque == Torque::Compensated,
             has_coulomb,
@@ -69,13 +77,14 @@ impl<'a> Corrector<'a> {
 
     /// Takes copies of what it borrows.
     pub(crate) fn into_owned(self) -> Corrector<'static> {
-        let Self { warmth, warm, is_compensated, has_coulomb, unit_payload, .. } = self;
+        let Self { warmth, coulomb, warm, is_compensated, has_coulomb, unit_payload, .. } = self;
         let Self { workspace, sin, cos, torque, .. } = self;
         Corrector {
             robot: Cow::Owned(self.robot.into_owned()),
             correction: Cow::Owned(self.correction.into_owned()),
             origin: Cow::Owned(self.origin.into_owned()),
             warmth,
+            coulomb,
             warm,
             is_compensated,
             has_coulomb,
@@ -93,7 +102,7 @@ impl<'a> Corrector<'a> {
         for (j, joint) in joints {
             let offset = qd[j] - self.origin[j];
             let viscous = (joint.quadratic + joint.cubic * offset) * offset * offset;
-            u[j] -= viscous + joint.warm_up * self.warmth * qd[j];
+            u[j] -= viscous + joint.warm_up * self.warmth[j] * qd[j];
         }
         if let Some(warm) = &self.warm {
             let joints = warm.joints().iter().zip(self.robot.joints()).enumerate();
@@ -111,10 +120,10 @@ impl<'a> Corrector<'a> {
         }
         if self.has_coulomb || changes_coulomb {
             self.robot.gravity(&self.sin, &self.cos, &mut self.workspace, &mut self.torque);
-            let joints = self.robot.joints().iter().zip(&self.correction.joints);
-            for (j, (joint, correction)) in joints.enumerate() {
+            let joints = self.robot.joints().iter().zip(&self.coulomb);
+            for (j, (joint, parts)) in joints.enumerate() {
                 let (load, qd) = (self.torque[j], qd[j]);
-                u[j] -= joint.friction.coulomb.softened_torque(load, qd, correction.coulomb);
+                u[j] -= joint.friction.coulomb.softened_torque(load, qd, *parts);
                 if let Some(warm) = self.warm.as_ref().filter(|_| changes_coulomb) {
                     let of =
                         |robot: &Robot| robot.joints()[j].friction.softened_dry_torque(load, qd);

@@ -6,10 +6,13 @@ use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
 use crate::error::Result;
-use crate::program::program::{Program, RowIndex, Solution, TIGHT, dot};
+use crate::program::program::{Program, RowIndex, Solution, TIGHT, Unknowns, dot};
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Deviation;
 use crate::tube::rows::NEGLIGIBLE_RADIUS;
+
+/// Rounding of recorded states, rad and rad/s: a part of 1e-15 of numbers up to 1,000.
+const STATE_ROUNDING: f64 = 1e-12;
 
 impl Program<'_> {
     /// Returns the program with other deviations on each of its blocks: the cost is the same.
@@ -120,10 +123,10 @@ impl Program<'_> {
     #[must_use]
     pub(crate) fn outside(&self, sets: &UncertaintySets) -> usize {
         let unknowns = self.unknowns(sets);
-        let violated =
-            |index: &RowIndex| self.is_violated(*index, self.excess(*index, &unknowns), &unknowns);
+        let missed =
+            |index: &RowIndex| self.is_missed(*index, self.excess(*index, &unknowns), &unknowns);
         let mut rows: Vec<_> =
-            self.indices(1).filter(violated).map(|(b, k, i, _)| (b, k, i)).collect();
+            self.indices(1).filter(missed).map(|(b, k, i, _)| (b, k, i)).collect();
         rows.dedup();
         rows.len()
     }
@@ -162,6 +165,13 @@ impl Program<'_> {
         [initial, input]
     }
 
+    /// Returns whether a row of recordings that the sets were not found for leaves them by more than
+    /// the rounding of recorded states. That decides at first samples, which X0 hardly has to reach
+    /// where each motion starts at its own state, and which no factor of U helps.
+    pub(crate) fn is_missed(&self, index: RowIndex, excess: f64, unknowns: &Unknowns) -> bool {
+        excess > STATE_ROUNDING && self.is_violated(index, excess, unknowns)
+    }
+
     /// Returns the factor of some radii with which the rows of some samples hold, up to rounding;
     /// `None` if no factor suffices.
     fn factor(
@@ -175,7 +185,8 @@ impl Program<'_> {
             let excess = self.excess(index, &unknowns);
             let gains = &self.row(index.0, index.1, index.2).1[part.clone()];
             let given = dot(gains, &unknowns.radius[part.clone()]);
-            if excess > 0.0 { 1.0 + excess / given } else { 1.0 }
+            let is_missed = self.is_missed(index, excess, &unknowns);
+            if is_missed { 1.0 + excess / given } else { 1.0 }
         };
         let rows = self.indices(1).filter(|(_, sample, ..)| is_asked(*sample));
         let factor = rows.map(needed).fold(1.0, f64::max);

@@ -101,6 +101,8 @@ codes! {
     ParametersMoved = "parameters-moved",
     /// The sets that hold for every run.
     AnyRun = "any-run",
+    /// Whether U covers joints that stick or slip at other times than the recorded ones.
+    Stiction = "stiction",
     /// How many recorded values touch the reachable set.
     Touching = "touching",
     /// How close motions of the model come to the recordings.

@@ -50,7 +50,7 @@ impl FrontEnd {
     #[must_use]
     pub(crate) fn setting(self, name: &str, value: Option<&str>) -> String {
         match (self, value) {
-            (Self::CommandLine, None) => format!("--{name}"),
+            (Self::CommandLine, None | Some("true")) => format!("--{name}"),
             // A value that begins with a minus would be taken for an option.
             (Self::CommandLine, Some(value)) if value.starts_with('-') => {
                 format!("--{name}={value}")
@@ -60,6 +60,7 @@ impl FrontEnd {
             (Self::Choices, Some("true")) => format!("{name} = true"),
             (Self::Choices, Some(value)) => format!("{name} = {}", python_value(name, value)),
             (Self::Python, None) => name.replace('-', "_"),
+            (Self::Python, Some("true")) => format!("{}=True", name.replace('-', "_")),
             (Self::Python, Some(value)) => {
                 format!("{}={}", name.replace('-', "_"), python_value(name, value))
             }
@@ -101,6 +102,7 @@ mod tests {
                 "calibrate=[\"MOTION\", ...]",
             ),
             ("max-gap", None, "--max-gap", "max_gap"),
+            ("stiction", Some("true"), "--stiction", "stiction=True"),
         ] {
             assert_eq!(CommandLine.setting(name, value), command);
             assert_eq!(Python.setting(name, value), python);

@@ -84,6 +84,7 @@ fn sets(model: &Model) -> Section {
         findings: model.warnings.iter().map(Finding::from).collect(),
         ..Section::default()
     };
+    section.findings.extend(model.finding_of_stiction(&model.stiction));
     if let Some(noise) = &model.sensor_noise {
         let (q, qd) = noise.radius.split_at(model.joints());
         let kinds = model.robot.kinds();

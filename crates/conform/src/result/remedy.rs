@@ -28,6 +28,7 @@ const EFFECTS: &[(&str, &str)] = &[
     ("identify", "identifies the robot from the recordings."),
     ("pull", "keeps the fitted values closer to the identified ones."),
     ("initial-limit", "limits X0 to the recorded starts."),
+    ("stiction", "of `conform` widens U so that it does."),
     ("disturbance", "lets the disturbance change during the motion."),
     ("noise", "adds measurement noise V."),
     (

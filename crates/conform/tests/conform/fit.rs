@@ -3,7 +3,7 @@
 use crate::common::{Random, conform_all, grid, step, two_joints};
 use nalgebra::DVector;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, OperatingBox, linear_model};
-use reachtube_conform::fit::{FitRecord, Fitted};
+use reachtube_conform::fit::{FitRecord, Fitted, FittedParameter};
 use reachtube_conform::fleet::{Fold, OnDefect};
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::result::Code;
@@ -27,6 +27,9 @@ struct Truth {
     shoulder: f64,
     /// Change of the elbow's viscous friction with ln(run), N m s/rad.
     warm_up: f64,
+    /// Change of the elbow's viscous friction, N m s/rad, and of the shoulder's Coulomb friction,
+    /// N m, per K above 30 °C.
+    heat: [f64; 2],
     /// Extra friction of the shoulder against the motion, N m.
     coulomb: f64,
     /// Mass at the tip, whose weight along -y the recorded input does not carry, kg.
@@ -47,7 +50,9 @@ fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
     for motion in 0..motions {
         let name = format!("motion{motion}");
         for place in 1..=RUNS {
-            let viscous = truth.elbow + truth.warm_up * (place as f64).ln();
+            let [shoulder, elbow] = HEAT[place - 1].map(|t| t - 30.0);
+            let viscous = truth.elbow + truth.warm_up * (place as f64).ln() + truth.heat[0] * elbow;
+            let coulomb = truth.coulomb + truth.heat[1] * shoulder;
             let values = [viscous, 0.3 + truth.shoulder];
             let described = robot.description().with_values(&parameters, &values).unwrap();
             let real = Robot::from_description(&described).unwrap();
@@ -60,14 +65,17 @@ fn record(robot: &Robot, truth: Truth, motions: usize) -> MemoryRuns {
                 states.extend(x.iter());
                 torques.extend(u.iter());
                 let mut real = u.map(|u| u + 0.02 * random.signed());
-                real[0] -= truth.coulomb * (x[2] / 0.02).clamp(-1.0, 1.0);
+                real[0] -= coulomb * (x[2] / 0.02).clamp(-1.0, 1.0);
                 let weight = 9.81 * truth.payload;
                 let elbow = 0.25 * (x[0] + x[1]).cos();
                 real[0] -= weight * (0.3 * x[0].cos() + elbow);
                 real[1] -= weight * elbow;
                 x = step(&system, times.get(k + 1).map_or(0.01, |next| next - t), &x, &real);
             }
-            let run = Run::new(2, times.clone(), states, torques).unwrap();
+            let mut run = Run::new(2, times.clone(), states, torques).unwrap();
+            if truth.heat != [0.0; 2] {
+                run = run.with_temperatures(HEAT[place - 1].repeat(SAMPLES)).unwrap();
+            }
             runs.push(&format!("{name}_{place}"), Some(&name), Some(&name), run);
         }
     }
@@ -87,8 +95,19 @@ fn fitted(problem: &Problem, groups: &[Group], pull: Option<f64>) -> Fitted {
     fit(problem, &FitSettings { groups: groups.to_vec(), pull }, &Silent).unwrap()
 }
 
-const PLAIN: Truth =
-    Truth { elbow: 1.0, shoulder: 0.0, warm_up: 0.0, coulomb: 0.0, payload: 0.0, uneven: false };
+const PLAIN: Truth = Truth {
+    elbow: 1.0,
+    shoulder: 0.0,
+    warm_up: 0.0,
+    heat: [0.0; 2],
+    coulomb: 0.0,
+    payload: 0.0,
+    uneven: false,
+};
+
+/// The temperatures of both joints in the runs of a motion, °C, in no order of the runs.
+const HEAT: [[f64; 2]; RUNS] =
+    [[24.0, 36.0], [36.0, 20.0], [28.0, 42.0], [40.0, 30.0], [32.0, 26.0]];
 
 #[test]
 fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
@@ -184,6 +203,44 @@ fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
     let other = same.with_setup(none);
     let verdict = check(&read, &other, &Tube::new(&other, read.sets()).unwrap()).unwrap();
     assert!(!verdict.verdict.conformant);
+}
+
+#[test]
+fn friction_that_changes_with_recorded_temperatures_is_found() {
+    let truth = Truth { heat: [-0.03, -0.01], ..PLAIN };
+    let read = |setup: Setup, keep| {
+        let runs = Box::new(self::record(&two_joints(), truth, 3));
+        Problem::read(setup, runs, &[], keep, &Silent).unwrap()
+    };
+    let mut description = two_joints().description().clone();
+    description.joints[0].friction.coulomb = [0.2, 0.0, -0.2, 0.0, -0.2, 0.0, 0.2, 0.0];
+    let robot = Robot::from_description(&description).unwrap();
+    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 2)).unwrap();
+    let problem = read(setup, Keep::All);
+    let before = conform_all(&problem);
+    let Fitted { problem: better, record, .. } = fitted(&problem, &[Group::WarmUp], Some(0.001));
+    assert!(record.cost < 0.4 * before.cost, "{} {}", before.cost, record.cost);
+    let of = |joint: usize, unit: &str| {
+        let is = |p: &&FittedParameter| p.joint == joint && p.unit == unit;
+        record.parameters.iter().find(is).unwrap().fitted
+    };
+    assert!((of(2, "N m/(rad/s)/K") + 0.03).abs() < 0.005, "{:?}", record.parameters);
+    // The change of Coulomb friction is in parts of 0.2 N m.
+    assert!((of(1, "1/K") + 0.05).abs() < 0.01, "{:?}", record.parameters);
+    // The file keeps it, and a check with it knows the temperatures of the recordings.
+    let found = conform_all(&better);
+    assert!(found.verdict.conformant && found.any_run.is_some());
+    let model = Model::new(&better, &found).with_fit(record);
+    let (model, setup) = Model::parse(&model.to_json(), "model.json".as_ref()).unwrap();
+    let same = read(setup, Keep::Needed);
+    let verdict = check(&model, &same, &Tube::new(&same, model.sets()).unwrap()).unwrap();
+    assert!(verdict.verdict.conformant, "{:?}", verdict.verdict);
+    // Without the temperatures every recording has the friction of the reference.
+    let runs = Box::new(self::record(&two_joints(), Truth { heat: [0.0; 2], ..truth }, 1));
+    let setup = same.setup().clone();
+    let cold = Problem::read(setup, runs, &[], Keep::Needed, &Silent).unwrap();
+    let notes = cold.recordings().notes.join("\n");
+    assert!(notes.contains("5 of the 5 recordings have no columns temp1"), "{notes}");
 }
 
 #[test]

@@ -91,7 +91,8 @@ fn the_rows_are_those_of_a_check_whatever_the_input_is() {
     let robot = bent();
     let of = |torque| Settings::new(torque, 2);
     let friction = JointCorrection { quadratic: 0.1, cubic: 0.02, ..Default::default() };
-    let correction = InputCorrection { joints: vec![friction; 2], payload: 0.1 };
+    let correction =
+        InputCorrection { joints: vec![friction; 2], payload: 0.1, ..InputCorrection::default() };
     let models = [
         model(&robot, of(Torque::Compensated), None),
         model(&robot, of(Torque::Motor), None),
@@ -220,7 +221,11 @@ fn a_sample_allocates_nothing() {
     for torque in [Torque::Compensated, Torque::Motor, Torque::Link] {
         let settings = Settings { equations: Equations::Robot, ..Settings::new(torque, 2) };
         let friction = JointCorrection { quadratic: 0.1, ..Default::default() };
-        let correction = InputCorrection { joints: vec![friction; 2], payload: 0.1 };
+        let correction = InputCorrection {
+            joints: vec![friction; 2],
+            payload: 0.1,
+            ..InputCorrection::default()
+        };
         let model = model(&robot, settings, Some(correction));
         let schedule = Schedule::with_horizon(0.2, STEP);
         let mut monitor = Monitor::new(&model, schedule).unwrap();

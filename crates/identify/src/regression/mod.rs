@@ -5,6 +5,7 @@
 //! rows do not determine. Residuals give the weights of a robust fit and the number of independent
 //! samples.
 
+mod reflections;
 pub(crate) mod residuals;
 pub(crate) mod singular;
 pub(crate) mod solution;

@@ -1,6 +1,8 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::regression::reflections::factor;
+
 /// Number of rows that are factored at once.
 const CHUNK: usize = 1024;
 
@@ -97,11 +99,6 @@ impl TriangularFactor {
     pub(crate) fn sum_of_squares(&self, x: &DVector<f64>) -> f64 {
         (&self.r * x - &self.z).norm_squared() + self.residual * self.residual
     }
-}
-
-/// Returns the triangular factor of a QR decomposition.
-fn factor(rows: DMatrix<f64>) -> DMatrix<f64> {
-    rows.qr().unpack_r()
 }
 
 fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {

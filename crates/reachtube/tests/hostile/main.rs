@@ -1,7 +1,8 @@
 //! Hostile files: every reader of a file refuses them in bounded time and memory, without a panic.
 //!
 //! `cargo test` tries a sample. `REACHTUBE_HOSTILE_INPUTS=10000000 cargo test --release
-//! -p reachtube --test hostile -- --ignored` tries that many for each reader.
+//! -p reachtube --test hostile -- --ignored` tries that many for each reader, or for those that
+//! `REACHTUBE_HOSTILE_READERS=capsules,brakes` names.
 
 mod mutation;
 mod seeds;
@@ -11,7 +12,9 @@ use std::path::Path;
 use mutation::attack;
 use reachtube::abstraction::PolynomialModel;
 use reachtube::identify::IdentifySettings;
+use reachtube::pipeline::Choices;
 use reachtube::recordings::{DataSet, ReadOptions, read_csv};
+use reachtube::verify::{Brakes, Capsules, Scenario};
 use reachtube::{Model, Robot};
 use reachtube_robot::{Urdf, UrdfOptions};
 
@@ -33,9 +36,16 @@ fn try_all(count: u64) {
     assert!(grown < MOST_MEMORY, "reading reserved {grown} bytes");
 }
 
+/// Returns whether a reader is to be tried.
+fn is_asked(name: &str) -> bool {
+    let names = std::env::var("REACHTUBE_HOSTILE_READERS");
+    names.map_or(true, |names| names.split(',').any(|asked| asked == name))
+}
+
 /// Tries the readers of text.
 fn try_texts(count: u64) {
     let try_text = |name: &str, seeds: Vec<Vec<u8>>, read: &dyn Fn(&str)| {
+        let count = if is_asked(name) { count } else { 0 };
         attack(name, &seeds, count, |bytes| read(&String::from_utf8_lossy(bytes)));
     };
     let options = UrdfOptions::default();
@@ -48,12 +58,28 @@ fn try_texts(count: u64) {
     try_text("settings", seeds::settings(), &|text| {
         drop(IdentifySettings::from_toml(text, "settings.toml"));
     });
+    try_text("choices", seeds::choices(), &|text| drop(Choices::from_toml(text)));
+    let arm = seeds::arm();
+    try_text("capsules", seeds::capsules(), &|text| {
+        drop(Capsules::from_toml(text, "capsules.toml", &arm));
+    });
+    try_text("brakes", seeds::brakes(), &|text| {
+        drop(Brakes::from_toml(text, "brakes.toml", &arm));
+    });
+    try_text("scenario", seeds::scenarios(), &|text| {
+        let scenario = Scenario::parse(text.into(), "scenario.toml", Path::new(""));
+        drop(scenario.and_then(|scenario| scenario.scene(&arm)));
+    });
+    let seeds = seeds::shields();
+    assert!(seeds::shield(&arm, String::from_utf8_lossy(&seeds[0]).into()).is_ok());
+    try_text("shield", seeds, &|text| drop(seeds::shield(&arm, text.into())));
 }
 
 /// Tries the readers of files, in a folder.
 fn try_files(count: u64, folder: &Path) {
     let try_file = |name: &str, seeds: Vec<Vec<u8>>, read: &dyn Fn(&Path)| {
         let path = folder.join(name);
+        let count = if is_asked(name) { count } else { 0 };
         attack(name, &seeds, count, |bytes| {
             std::fs::write(&path, bytes).unwrap();
             read(&path);

@@ -1,6 +1,9 @@
 //! Texts of the shape of real files, from which hostile ones are made.
 
 use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube::export::ExportError;
+use reachtube::export::shield::{Shield, ShieldFile};
+use reachtube::verify::Capsules;
 use reachtube::{
     Keep, MemoryRuns, Model, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform,
 };
@@ -115,4 +118,56 @@ pub(crate) fn abstractions() -> Vec<Vec<u8>> {
     [bounded, make(ModelKind::Two, 3), make(ModelKind::Three, 2)]
         .map(|model| model.to_json().into_bytes())
         .into()
+}
+
+/// Returns an arm of two hinges.
+pub(crate) fn arm() -> Robot {
+    Robot::from_toml(ROBOT, "arm.toml").unwrap()
+}
+
+pub(crate) fn choices() -> Vec<Vec<u8>> {
+    let text = "robot = \"arm.urdf\"\ntorque = \"motor\"\nlock = [\"a\", \"b=1.5\"]\nhorizon = \
+                0.3\nallowance = [0.0, 0.1]\nequations = \"robot\"\nfit = [\"inertia\"]\n\
+                expansion = [0.1, -2]\nrepeats = true\n";
+    vec![text.into(), format!("# horizon: two words\n{text}").into_bytes()]
+}
+
+const CAPSULES: &str = "[[capsule]]\nlink = 1\nfrom = [0.0, 0, 0]\nto = [0.1, 0.1, 0.3]\nradius = \
+                        0.05\n\n[[capsule]]\nlink = \"elbow\"\nfrom = [0.0, 0, 0]\nto = \
+                        [-0.3, 0, 0]\nradius = 0.07\n";
+
+pub(crate) fn capsules() -> Vec<Vec<u8>> {
+    vec![CAPSULES.into()]
+}
+
+pub(crate) fn brakes() -> Vec<Vec<u8>> {
+    let text = "torque = [[40, 60.5], [20, 30]]\ndelay = [0.01, 0.03]\nerror = [0.5, 0.1]\n\
+                deceleration = [2.0, 3]\n\n[payload]\nmass = [0, 1.5]\ncentre = [[0, 0.1], [0, \
+                0], [0, 0.05]]\n";
+    vec![text.into(), b"torque = [[40, 60], [20, 30]]\ndelay = [0, 0]\n".into()]
+}
+
+pub(crate) fn scenarios() -> Vec<Vec<u8>> {
+    let text = "model = \"model.json\"\ndata = \"recordings\"\nsuites = [\"A\"]\nuntil = \
+                0.5\nclearance = 0.02\nrefine = 4\n\n[[obstacle]]\nname = \"table\"\nbox = { \
+                centre = [0, 0, -0.5], size = [1.0, 1, 0.02], rpy = [0, 0, 0.1] }\n\n[[obstacle]]\n\
+                name = \"post\"\ncapsule = { from = [1, 0, 0], to = [1, 0, 2], radius = 0.1 }\n\
+                speed = 0.1\n\n[[person]]\nname = \"p\"\nsphere = { centre = [2, 0, 1], radius = \
+                0.3 }\n";
+    vec![text.into()]
+}
+
+/// Returns the robot's file of the shield as the export writes it, and its trajectory's file.
+pub(crate) fn shields() -> Vec<Vec<u8>> {
+    let (arm, capsules) = (arm(), Capsules::from_toml(CAPSULES, "capsules", &arm()).unwrap());
+    let own = Shield::new(&arm, Some(&capsules), &[], &[]).unwrap();
+    let trajectory = "# limits\nv_max_allowed: [1.0, 2]\na_max_allowed: [10.0, 5]\n\
+                      a_max_ltt: [2, 2]\nj_max_allowed: [400, 400]\n";
+    vec![own.files[0].text.clone().into_bytes(), trajectory.into()]
+}
+
+/// Reads a robot's file of the shield.
+pub(crate) fn shield(arm: &Robot, text: String) -> Result<Shield, ExportError> {
+    let update = ShieldFile { name: "robot_parameters.yaml".into(), text };
+    Shield::new(arm, None, &[], &[update])
 }

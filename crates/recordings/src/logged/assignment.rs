@@ -212,7 +212,7 @@ impl Finder<'_> {
             "the positions are targets only: {}; a model needs what the robot did",
             listed(targets.iter().map(|column| column.text.as_str()))
         );
-        let remedy = "log the measured positions too, such as actual_q_0";
+        let remedy = "log the measured positions too, such as actual_q_0, or leave the file out";
         Err(self.defect(DefectKind::Header, problem, remedy))
     }
 

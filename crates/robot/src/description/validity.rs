@@ -40,7 +40,8 @@ fn require(
 
 impl RobotDescription {
     /// Returns the joints whose link has a mass and an inertia that no body has.
-    pub(crate) fn impossible_links(&self) -> Vec<&str> {
+    #[must_use]
+    pub fn impossible_links(&self) -> Vec<&str> {
         let is_impossible = |joint: &&JointDescription| {
             check_link_numbers(joint).is_ok() && check_body(joint).is_err()
         };

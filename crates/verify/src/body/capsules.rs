@@ -35,7 +35,8 @@ impl Capsules {
     pub fn open(path: Option<&Path>, robot: &Robot) -> Result<Self> {
         let Some(path) = path else { return Self::embedded(robot) };
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {
-            return Self::of_urdf(&Urdf::load(path, &UrdfOptions::default())?);
+            let folder = path.parent().unwrap_or(Path::new(""));
+            return Self::of_urdf(&Urdf::load(path, &UrdfOptions::default())?, folder);
         }
         let text = reachtube_files::read_text(path, "name a TOML or URDF file with capsules")?;
         Self::from_toml(&text, &path.display().to_string(), robot)
@@ -63,18 +64,22 @@ impl Capsules {
         Ok(Self(parse(text, origin, robot)?))
     }
 
-    /// Makes a capsule around each box, cylinder and sphere of a URDF's `<collision>` elements.
+    /// Makes a capsule around each box, cylinder, sphere and mesh of a URDF's `<collision>`
+    /// elements. Meshes are STL files, with paths relative to `folder`; `package://` is sought
+    /// from there upwards.
     ///
     /// # Guarantee
     ///
-    /// Outer, directed rounding: each capsule contains its shape.
+    /// Outer, directed rounding: each capsule contains its shape, and each vertex of a mesh as it
+    /// is loaded in single precision.
     ///
     /// # Errors
     ///
     /// [`Error::Mesh`], [`Error::NoCapsules`] if there is no shape, and the errors of the URDF.
-    pub fn of_urdf(urdf: &Urdf) -> Result<Self> {
+    pub fn of_urdf(urdf: &Urdf, folder: &Path) -> Result<Self> {
         let shapes = urdf.collision_shapes()?;
-        let capsules = shapes.iter().map(enclosing_capsule).collect::<Result<Vec<_>>>()?;
+        let capsules = shapes.iter().map(|shape| enclosing_capsule(shape, folder));
+        let capsules = capsules.collect::<Result<Vec<_>>>()?;
         if capsules.is_empty() {
             return Err(Error::NoCapsules { robot: urdf.robot().name().into() });
         }

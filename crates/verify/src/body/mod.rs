@@ -5,4 +5,5 @@ pub(crate) mod body;
 pub(crate) mod capsule;
 pub(crate) mod capsules;
 mod fit;
+mod fit_mesh;
 mod read;

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use nalgebra::Rotation3;
+use nalgebra::{Rotation3, Vector3};
 use reachtube_reach::Hyperrectangle;
 use reachtube_robot::Robot;
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::error::{Error, Result, line_of};
+use crate::mesh::{Problem, vertices};
 use crate::scene::obstacle::{Obstacle, Solid};
 use crate::stop::brakes::Brakes;
 use crate::stop::category::Category;
@@ -19,6 +20,9 @@ pub(crate) const WALKING: f64 = 1.6;
 
 /// Number of parts into which a step is divided, at most, where its enclosure comes too close.
 const REFINE: u32 = 8;
+
+/// By which part a box around a mesh is larger than the mesh, far more than rounding.
+const MARGIN: f64 = 1e-12;
 
 /// A question: a model, recorded motions, and what the robot must stay clear of.
 #[derive(Debug)]
@@ -87,6 +91,7 @@ struct ObstacleTable {
     cuboid: Option<BoxTable>,
     capsule: Option<CapsuleTable>,
     sphere: Option<SphereTable>,
+    mesh: Option<MeshTable>,
     speed: Option<f64>,
     links: Option<Vec<String>>,
 }
@@ -120,6 +125,22 @@ struct CapsuleTable {
 struct SphereTable {
     centre: [f64; 3],
     radius: f64,
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeshTable {
+    file: PathBuf,
+    #[serde(default = "one")]
+    scale: f64,
+    #[serde(default)]
+    position: [f64; 3],
+    #[serde(default)]
+    rpy: [f64; 3],
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 impl Scenario {
@@ -244,7 +265,8 @@ impl Scenario {
         let (at, table) = (table.span().start, table.get_ref());
         let place = format!("obstacle `{}`: ", table.name);
         let invalid = |problem: &str, remedy: &str| self.invalid(at, &place, problem, remedy);
-        let solid = table.solid().map_err(|(problem, remedy)| invalid(&problem, remedy))?;
+        let solid = table.solid(&self.folder);
+        let solid = solid.map_err(|(problem, remedy)| invalid(&problem, remedy))?;
         let speed = table.speed.unwrap_or(speed);
         if !(speed >= 0.0 && speed.is_finite()) {
             return Err(invalid(
@@ -279,21 +301,22 @@ impl Scenario {
 
 impl ObstacleTable {
     /// Returns the solid, or the problem and its remedy.
-    fn solid(&self) -> core::result::Result<Solid, (String, &'static str)> {
-        let Self { half_space, cuboid, capsule, sphere, .. } = self;
-        let solid = match (half_space, cuboid, capsule, sphere) {
-            (Some(HalfSpaceTable { normal, offset }), None, None, None) => {
+    fn solid(&self, folder: &Path) -> core::result::Result<Solid, Problem> {
+        let Self { half_space, cuboid, capsule, sphere, mesh, .. } = self;
+        let solid = match (half_space, cuboid, capsule, sphere, mesh) {
+            (Some(HalfSpaceTable { normal, offset }), None, None, None, None) => {
                 Solid::HalfSpace { normal: *normal, offset: *offset }
             }
-            (None, Some(table), None, None) => table.solid(),
-            (None, None, Some(CapsuleTable { from, to, radius }), None) => {
+            (None, Some(table), None, None, None) => table.solid(),
+            (None, None, None, None, Some(table)) => table.around(folder)?,
+            (None, None, Some(CapsuleTable { from, to, radius }), None, None) => {
                 Solid::Capsule { from: *from, to: *to, radius: *radius }
             }
-            (None, None, None, Some(SphereTable { centre, radius })) => {
+            (None, None, None, Some(SphereTable { centre, radius }), None) => {
                 Solid::Capsule { from: *centre, to: *centre, radius: *radius }
             }
             _ => {
-                let remedy = "give exactly one of half-space, box, capsule and sphere";
+                let remedy = "give exactly one of half-space, box, capsule, sphere and mesh";
                 return Err(("it has no shape, or several".into(), remedy));
             }
         };
@@ -321,5 +344,31 @@ impl BoxTable {
         let axis = |i: usize| rotation.column(i).into_owned().into();
         let axes = [axis(0), axis(1), axis(2)];
         Solid::Box { centre: self.centre, axes, half: self.size.map(|side| 0.5 * side) }
+    }
+}
+
+impl MeshTable {
+    /// Returns the box around a mesh along the axes of its file, a little larger than rounding
+    /// makes it.
+    fn around(&self, folder: &Path) -> core::result::Result<Solid, Problem> {
+        let name = self.file.display();
+        let all = vertices(&folder.join(&self.file))
+            .map_err(|(problem, remedy)| (format!("the mesh `{name}` {problem}"), remedy))?;
+        if !(self.scale > 0.0 && self.scale.is_finite()) {
+            return Err((format!("scale = {}", self.scale), "give a finite number above 0"));
+        }
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for (vertex, i) in all.iter().flat_map(|vertex| (0..3).map(move |i| (vertex, i))) {
+            low[i] = low[i].min(self.scale * vertex[i]);
+            high[i] = high[i].max(self.scale * vertex[i]);
+        }
+        let [roll, pitch, yaw] = self.rpy;
+        let rotation = Rotation3::from_euler_angles(roll, pitch, yaw);
+        let middle = Vector3::from_fn(|i, _| 0.5 * (low[i] + high[i]));
+        let centre = rotation * middle + Vector3::from(self.position);
+        let largest = middle.amax().max(Vector3::from(self.position).amax());
+        let slack = MARGIN * (1.0 + largest);
+        let size = [0, 1, 2].map(|i| (high[i] - low[i]) * (1.0 + MARGIN) + slack);
+        Ok(BoxTable { centre: centre.into(), size, rpy: self.rpy }.solid())
     }
 }

@@ -3,7 +3,7 @@ use reachtube_robot::Robot;
 use crate::stop::path::{Path, feed_forward};
 
 /// The time over which a controller holds a torque, s.
-const CYCLE: f64 = 0.002;
+pub(super) const CYCLE: f64 = 0.002;
 
 /// The most cycles of a deceleration: 10 s.
 const MOST_CYCLES: f64 = 5000.0;

@@ -11,6 +11,7 @@ mod findings;
 pub(crate) mod path;
 pub(crate) mod recorded;
 pub(crate) mod rule;
+pub(crate) mod simulated;
 #[expect(clippy::module_inception, reason = "the stop is the concept of this folder")]
 pub(crate) mod stop;
 pub(crate) mod study;

@@ -1,18 +1,21 @@
 //! What would decide a question that is open.
 
-use reachtube_conform::{Problem, Result, Tube, UncertaintySets, reach};
+use reachtube_conform::{Result, SuiteReach, Tube, UncertaintySets, reach};
 use reachtube_reach::Hyperrectangle;
 use serde::Serialize;
 
-use crate::body::body::Body;
 use crate::scene::scenario::Scene;
+use crate::stop::category::Category;
+use crate::stop::rule::StopRule;
 use crate::verdict::clearance::{Clearance, clearances};
+use crate::verdict::stops::MotionStops;
+use crate::verdict::verification::Question;
 
 /// Numbers of parts of a step that are tried.
 const PARTS: [u32; 2] = [64, 512];
 
-/// Halvings of the interval in which the factor of the sets lies.
-const HALVINGS: u32 = 6;
+/// Halvings of the interval in which the factor of the sets lies, for motions and for stops.
+const HALVINGS: [u32; 2] = [6, 4];
 
 /// What would decide a question that is open, found by trying.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -26,6 +29,8 @@ pub enum Advice {
     /// Without any uncertainty no distance is proved either: the nominal motion itself comes too
     /// close.
     Nominal,
+    /// Without any uncertainty no standstill is proved either: the brakes are too weak.
+    Brakes,
     /// The reachable set ends before the motion does.
     SetLost,
     /// Sets of a model that is not linear were not tried, as each takes long to compute.
@@ -37,12 +42,8 @@ pub enum Advice {
 /// # Errors
 ///
 /// As [`reach()`].
-pub(super) fn advice(
-    problem: &Problem,
-    tube: &Tube,
-    (body, scene): (&Body, &Scene),
-    index: usize,
-) -> Result<Advice> {
+pub(super) fn advice(question: &Question, index: usize) -> Result<Advice> {
+    let Question { problem, tube, body, scene } = *question;
     let is_clear = |tube: &Tube, parts: u32| -> Result<bool> {
         let reached = &reach(problem, tube)?[index];
         let all = clearances(body, scene, reached, parts);
@@ -57,15 +58,55 @@ pub(super) fn advice(
         return Ok(Advice::NotTried);
     }
     let with = |factor: f64| is_clear(&Tube::new(problem, scaled(&tube.sets, factor))?, PARTS[0]);
-    if !with(0.0)? {
-        return Ok(Advice::Nominal);
+    if with(0.0)? { largest(HALVINGS[0], with) } else { Ok(Advice::Nominal) }
+}
+
+/// Finds what would decide whether the links stay clear until standstill.
+///
+/// # Errors
+///
+/// As [`reach()`].
+pub(super) fn stop_advice(question: &Question, rule: &StopRule, index: usize) -> Result<Advice> {
+    let Question { problem, tube, body, scene } = *question;
+    if problem.dynamics().linear_system().is_none() {
+        return Ok(Advice::NotTried);
     }
+    let with = |factor: f64| -> Result<(MotionStops, bool)> {
+        let sets = scaled(&tube.sets, factor);
+        let reached: &SuiteReach = &reach(problem, &Tube::new(problem, sets)?)?[index];
+        let stops =
+            MotionStops::new(problem.robot(), (body, scene), &narrowed(rule, factor), reached);
+        let is_clear =
+            rule.distance.is_some() || clears(&clearances(body, scene, reached, PARTS[0]), scene);
+        let is_clear = is_clear && reached.lost.is_none() && stops.is_clear(scene);
+        Ok((stops, is_clear))
+    };
+    match with(0.0)? {
+        (_, true) => largest(HALVINGS[1], |factor| Ok(with(factor)?.1)),
+        (stops, false) if stops.proved < stops.samples => Ok(Advice::Brakes),
+        _ => Ok(Advice::Nominal),
+    }
+}
+
+/// Returns the largest factor of the sets that decides, found by bisection from 0, which does.
+fn largest(halvings: u32, decides: impl Fn(f64) -> Result<bool>) -> Result<Advice> {
     let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
+    for _ in 0..halvings {
         let middle = 0.5 * (low + high);
-        if with(middle)? { low = middle } else { high = middle }
+        if decides(middle)? { low = middle } else { high = middle }
     }
     Ok(Advice::SmallerSets(low))
+}
+
+/// Scales how far the torque of the drives may be from the controller's.
+fn narrowed(rule: &StopRule, factor: f64) -> StopRule {
+    let category = match &rule.category {
+        Category::Zero => Category::Zero,
+        Category::One { limits, input_set } => {
+            Category::One { limits: limits.clone(), input_set: scaled_set(input_set, factor) }
+        }
+    };
+    StopRule { category, ..rule.clone() }
 }
 
 /// Returns whether all distances are above the clearance that is asked for.
@@ -75,13 +116,14 @@ pub(super) fn clears(all: &[Clearance], scene: &Scene) -> bool {
 
 /// Scales the radii of X0 and U.
 fn scaled(sets: &UncertaintySets, factor: f64) -> UncertaintySets {
-    let scale = |set: &Hyperrectangle| Hyperrectangle {
-        centre: set.centre.clone(),
-        radius: set.radius.iter().map(|r| r * factor).collect(),
-    };
     UncertaintySets {
-        initial_set: scale(&sets.initial_set),
-        input_set: scale(&sets.input_set),
+        initial_set: scaled_set(&sets.initial_set, factor),
+        input_set: scaled_set(&sets.input_set, factor),
         noise_set: sets.noise_set.clone(),
     }
+}
+
+fn scaled_set(set: &Hyperrectangle, factor: f64) -> Hyperrectangle {
+    let radius = set.radius.iter().map(|r| r * factor).collect();
+    Hyperrectangle { centre: set.centre.clone(), radius }
 }

@@ -88,8 +88,13 @@ fn too_close(worst: &Verification) -> Option<String> {
         near => format!("is {near:.4} m from `{}`", found.obstacle),
     };
     let (link, time, case) = (&found.link, found.time, &worst.case);
-    let text = "unsafe: on a motion of the model, the link of";
-    Some(format!("{text} {link} {how} at {time:.3} s ({case})."))
+    let when = match (&found.stop, &worst.stops) {
+        (Some(stop), Some(stops)) => {
+            format!("after a stop of category {} at {:.3} s", stops.category, stop.from)
+        }
+        _ => "on a motion of the model".into(),
+    };
+    Some(format!("unsafe: {when}, the link of {link} {how} at {time:.3} s ({case})."))
 }
 
 /// Returns what would decide an open question.
@@ -115,6 +120,13 @@ fn next(v: &Verification) -> Option<Finding> {
             format!(
                 "{case}: without any uncertainty no distance is proved either; move the obstacle \
                  or the motion."
+            ),
+        ),
+        Advice::Brakes => info(
+            Code::BrakeWeak,
+            format!(
+                "{case}: without any uncertainty no standstill is proved either; the brakes are \
+                 too weak for the load."
             ),
         ),
         Advice::SetLost => info(

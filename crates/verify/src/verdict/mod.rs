@@ -6,6 +6,7 @@ pub(crate) mod findings;
 mod gradient;
 mod part_of_step;
 pub(crate) mod stop_verdict;
+mod stop_witness;
 mod stopped;
 pub(crate) mod stops;
 pub(crate) mod verification;

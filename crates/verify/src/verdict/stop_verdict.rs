@@ -37,8 +37,11 @@ pub(crate) fn stop_verdict(worst: &Verification, keep: &str) -> Option<String> {
         } else {
             format!("no distance{keep} is proved between the link of {link} and `{obstacle}`")
         };
+        let found = worst.closest.as_ref().map_or(String::new(), |found| {
+            format!("; the closest motion found stays {:.4} m away", found.distance)
+        });
         return Some(format!(
-            "undecided: after a stop of category {category} at {from:.3} s, {why} ({case})."
+            "undecided: after a stop of category {category} at {from:.3} s, {why} ({case}){found}."
         ));
     }
     let closest = match motion {

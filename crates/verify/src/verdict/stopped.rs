@@ -1,12 +1,19 @@
 //! The verdict about a motion that is stopped.
 
+use reachtube_conform::data::Case;
 use reachtube_robot::Robot;
 
 use crate::body::body::Body;
+use crate::error::Result;
 use crate::scene::scenario::Scene;
+use crate::stop::along::Motion;
+use crate::stop::path::Path;
 use crate::stop::rule::StopRule;
-use crate::verdict::stops::{MotionStops, StopClearance};
-use crate::verdict::verification::{Answer, Verification};
+use crate::verdict::decide::{Advice, stop_advice};
+use crate::verdict::stop_witness::{StopSearch, TOUCH_OF_STOP};
+use crate::verdict::stops::{MotionStops, stop_from};
+use crate::verdict::verification::{Answer, Question, Verification};
+use crate::verdict::witness::Approach;
 
 impl Verification {
     /// Adds the stops of a scenario: the answer then holds for the motion up to the stop and for
@@ -34,8 +41,7 @@ impl Verification {
         rule: &StopRule,
     ) -> Self {
         let stops = MotionStops::new(robot, (body, scene), rule, &self.reach);
-        let keeps = |pair: &StopClearance| pair.distance > scene.clearance;
-        let is_clear = stops.samples > 0 && stops.clearances.iter().all(keeps);
+        let is_clear = stops.is_clear(scene);
         self.answer = match (rule.distance, self.answer) {
             (None, Answer::Unsafe) => Answer::Unsafe,
             (None, Answer::Safe) if is_clear => Answer::Safe,
@@ -44,9 +50,49 @@ impl Verification {
         };
         if rule.distance.is_some() {
             // The motion without a stop is not one of the scenario.
-            (self.closest, self.advice) = (None, None);
+            self.closest = None;
+            self.advice = self.lost.is_some().then_some(Advice::SetLost);
         }
         self.stops = Some(stops);
         self
+    }
+}
+
+impl Question<'_> {
+    /// Adds the stops to the verdict about a motion, and if they leave it open, a stopped motion
+    /// that comes close and what would decide.
+    pub(super) fn stopped(
+        &self,
+        rule: &StopRule,
+        (index, case): (usize, &Case),
+        motion: Verification,
+    ) -> Result<Verification> {
+        let Self { problem, tube, body, scene, .. } = *self;
+        let robot = problem.robot();
+        let mut found = motion.with_stops(robot, (body, scene), rule);
+        let Some(stops) = &mut found.stops else { return Ok(found) };
+        if found.answer != Answer::Undecided || stops.samples == 0 || stops.is_clear(scene) {
+            return Ok(found);
+        }
+        let search = StopSearch {
+            approach: Approach { problem, case, sets: &tube.sets, body, scene },
+            rule,
+            path: Path::through(&found.reach.times, &Motion::of_reach(&found.reach).middle()),
+        };
+        if let Some(witness) = search.closest(&stops.pairs, stops.last) {
+            if witness.distance < scene.clearance - TOUCH_OF_STOP {
+                let from = witness.stop.as_ref().map_or(0.0, |stop| stop.from);
+                let k = found.reach.times.partition_point(|time| *time < from);
+                stops.worst = stop_from(robot, rule, &found.reach, k);
+                (found.answer, found.advice) = (Answer::Unsafe, None);
+            }
+            if found.closest.as_ref().is_none_or(|known| witness.distance < known.distance) {
+                found.closest = Some(witness);
+            }
+        }
+        if found.answer == Answer::Undecided && found.advice.is_none() {
+            found.advice = Some(stop_advice(self, rule, index)?);
+        }
+        Ok(found)
     }
 }

@@ -12,7 +12,7 @@ use crate::stop::along::Motion;
 use crate::stop::path::Path;
 use crate::stop::rule::StopRule;
 use crate::stop::stop::Stop;
-use crate::verdict::clearance::{Memory, Search};
+use crate::verdict::clearance::{Clearance, Memory, Search};
 
 /// Number of steps of a stop whose hull is tried first.
 const STEPS: usize = 8;
@@ -39,6 +39,12 @@ pub struct MotionStops {
     /// The stop with the smallest distance, from the time of its sample (s).
     #[serde(skip)]
     pub worst: Option<(f64, Stop)>,
+    /// The smallest distances, smallest first, with the samples at which those stops begin.
+    #[serde(skip)]
+    pub(super) pairs: Vec<Clearance>,
+    /// The last sample from which a stop was followed.
+    #[serde(skip)]
+    pub(super) last: usize,
 }
 
 /// The smallest proved distance between a link and an obstacle during the stops of a motion.
@@ -108,18 +114,10 @@ impl MotionStops {
         });
         let mut pairs = search.by_link(reach, &smallest.collect::<Vec<_>>());
         pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-        let worst = pairs.first().and_then(|pair| {
-            let (k, width) = (pair.step, reach.dimension);
-            let state = |bounds: &[f64]| bounds[k * width..(k + 1) * width].to_vec();
-            let sides = state(&reach.lower).into_iter().zip(state(&reach.upper));
-            let start: Vec<Interval> =
-                sides.map(|(a, b)| Interval::point(a).hull(Interval::point(b))).collect();
-            let path = Path::through(motion.times(), &motion.middle());
-            Some((pair.time, category.stop(robot, brakes, (&path, pair.time), &start)?))
-        });
-        let clearances = pairs.into_iter().map(|pair| StopClearance {
-            link: pair.link,
-            obstacle: pair.obstacle,
+        let worst = pairs.first().and_then(|pair| stop_from(robot, rule, reach, pair.step));
+        let clearances = pairs.iter().map(|pair| StopClearance {
+            link: pair.link.clone(),
+            obstacle: pair.obstacle.clone(),
             distance: pair.distance,
             from: pair.time,
         });
@@ -132,8 +130,32 @@ impl MotionStops {
             clearances: clearances.collect(),
             trigger: trigger(body, &followed, &reach.times),
             worst,
+            last: followed.last().map_or(0, |(k, _)| *k),
+            pairs,
         }
     }
+
+    /// Returns whether each link keeps the clearance until standstill.
+    pub(super) fn is_clear(&self, scene: &Scene) -> bool {
+        self.samples > 0 && self.clearances.iter().all(|pair| pair.distance > scene.clearance)
+    }
+}
+
+/// Encloses the stop from sample k of a reachable set, and returns it with the time of the sample
+/// (s).
+pub(super) fn stop_from(
+    robot: &Robot,
+    rule: &StopRule,
+    reach: &SuiteReach,
+    k: usize,
+) -> Option<(f64, Stop)> {
+    let (motion, width) = (Motion::of_reach(reach), reach.dimension);
+    let sides = reach.lower.iter().zip(&reach.upper).skip(k * width).take(width);
+    let start: Vec<Interval> =
+        sides.map(|(a, b)| Interval::point(*a).hull(Interval::point(*b))).collect();
+    let path = Path::through(motion.times(), &motion.middle());
+    let stop = rule.category.stop(robot, &rule.brakes, (&path, reach.times[k]), &start)?;
+    Some((reach.times[k], stop))
 }
 
 impl FromSample {

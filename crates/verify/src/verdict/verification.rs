@@ -1,5 +1,6 @@
 //! The verdict about each motion.
 
+use reachtube_conform::data::Case;
 use reachtube_conform::tube::Lost;
 use reachtube_conform::{Problem, SuiteReach, Tube, reach};
 use serde::Serialize;
@@ -8,6 +9,7 @@ use crate::body::body::Body;
 use crate::error::Result;
 use crate::margin::Margin;
 use crate::scene::scenario::Scene;
+use crate::stop::rule::StopRule;
 use crate::verdict::clearance::{Clearance, clearances};
 use crate::verdict::decide::{Advice, advice, clears};
 use crate::verdict::stops::MotionStops;
@@ -53,13 +55,23 @@ pub struct Verification {
     pub reach: SuiteReach,
 }
 
-/// Decides for each motion of a problem whether the links stay clear under the sets of `tube`.
+/// A question about the motions of a model.
+pub(super) struct Question<'a> {
+    pub problem: &'a Problem,
+    pub tube: &'a Tube,
+    pub body: &'a Body,
+    pub scene: &'a Scene,
+}
+
+/// Decides for each motion of a problem whether the links stay clear under the sets of `tube`; with
+/// a rule for stops, also until standstill.
 ///
 /// # Guarantee
 ///
 /// Safe is proved with directed rounding, for every motion of the model from X0 under U and at
-/// every time. Unsafe rests on a motion that is simulated in floating point and comes closer than
-/// the clearance by more than 1e-6 m.
+/// every time, and as [`Verification::with_stops`] for stops. Unsafe rests on a motion that is
+/// simulated in floating point and comes closer than the clearance by more than 1e-6 m, during a
+/// stop by more than 1e-4 m.
 ///
 /// # Errors
 ///
@@ -67,18 +79,40 @@ pub struct Verification {
 pub fn verify(
     problem: &Problem,
     tube: &Tube,
-    body: &Body,
-    scene: &Scene,
+    (body, scene): (&Body, &Scene),
+    stops: Option<&StopRule>,
 ) -> Result<Vec<Verification>> {
     let reached = reach(problem, tube)?;
+    let question = Question { problem, tube, body, scene };
+    // A stop that is triggered at a distance ends each motion that would come close.
+    let is_open = stops.is_none_or(|rule| rule.distance.is_none());
     let cases = problem.cases()?.iter().zip(reached).enumerate();
-    let decide = |(index, (case, reach)): (usize, (&reachtube_conform::data::Case, SuiteReach))| {
+    let decide = |(index, (case, reach)): (usize, (&Case, SuiteReach))| {
+        let motion = question.motion((index, case), reach, is_open)?;
+        match stops {
+            Some(rule) => question.stopped(rule, (index, case), motion),
+            None => Ok(motion),
+        }
+    };
+    cases.map(decide).collect()
+}
+
+impl Question<'_> {
+    /// Decides about a motion without a stop. If that `is_open` and not proved to be safe, it seeks
+    /// a motion that touches, and what would decide.
+    fn motion(
+        &self,
+        (index, case): (usize, &Case),
+        reach: SuiteReach,
+        is_open: bool,
+    ) -> Result<Verification> {
+        let Self { problem, tube, body, scene } = *self;
         let mut clearances = clearances(body, scene, &reach, scene.refine);
         clearances.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let margins = body.margins(&reach);
         let lost = reach.lost.clone();
         let proved = clears(&clearances, scene);
-        let closest = if proved {
+        let closest = if proved || !is_open {
             None
         } else {
             let approach = Approach { problem, case, sets: &tube.sets, body, scene };
@@ -93,12 +127,10 @@ pub fn verify(
         };
         let advice = match (answer, &lost) {
             (Answer::Undecided, Some(_)) => Some(Advice::SetLost),
-            (Answer::Undecided, None) => Some(advice(problem, tube, (body, scene), index)?),
+            (Answer::Undecided, None) if is_open => Some(advice(self, index)?),
             _ => None,
         };
-        let case = case.name.clone();
-        let stops = None;
+        let (case, stops) = (case.name.clone(), None);
         Ok(Verification { case, answer, clearances, margins, closest, advice, stops, lost, reach })
-    };
-    cases.map(decide).collect()
+    }
 }

@@ -32,10 +32,13 @@ pub struct Witness {
     pub time: f64,
     /// The initial state, 2n.
     pub start: Vec<f64>,
-    /// The input that is held from each sample to the next, samples x n.
+    /// The stop that ends the motion, if the link comes closest during one.
+    pub stop: Option<StopOfWitness>,
+    /// The input that is held from each sample to the next, samples x n; during a stop the torque
+    /// of the drives.
     #[serde(skip)]
     pub inputs: Vec<f64>,
-    /// The sample times, s.
+    /// The sample times, s; during a stop 2 ms apart.
     #[serde(skip)]
     pub times: Vec<f64>,
     /// The states at the samples, samples x 2n.
@@ -43,7 +46,32 @@ pub struct Witness {
     pub states: Vec<f64>,
 }
 
+/// The stop of a witness.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StopOfWitness {
+    /// The time at which the stop begins, s.
+    pub from: f64,
+    /// The torque of each brake \[N m; N\].
+    pub brake: Vec<f64>,
+    /// The time from which the brakes hold, after the drives are off, s.
+    pub delay: f64,
+    /// The error of the torque of each joint after the stop began \[N m; N\].
+    pub error: Vec<f64>,
+}
+
+impl Witness {
+    /// Returns the state at a time (s), of the sample before or at it: at the last sample after the
+    /// end.
+    #[must_use]
+    pub fn at(&self, time: f64) -> &[f64] {
+        let width = self.start.len();
+        let k = self.times.partition_point(|t| *t <= time + 1e-9).max(1) - 1;
+        &self.states[k * width..(k + 1) * width]
+    }
+}
+
 /// What the search for a motion needs.
+#[derive(Clone, Copy)]
 pub(crate) struct Approach<'a> {
     pub problem: &'a Problem,
     pub case: &'a Case,
@@ -56,13 +84,9 @@ impl Approach<'_> {
     /// Searches for the motion of the model that brings a link closest to an obstacle: from the
     /// nominal one, each round takes the vertices of X0 and U towards the obstacle.
     pub(crate) fn closest(&self, pair: &Clearance) -> Option<Witness> {
-        let Self { case, sets, problem, .. } = self;
+        let Self { case, problem, .. } = self;
         let (n, samples) = (case.joints(), case.grid.len());
-        let shifted = |base: &[f64], centre: &[f64]| -> Vec<f64> {
-            base.iter().zip(centre.iter().cycle()).map(|(x, c)| x + c).collect()
-        };
-        let start = shifted(&case.start, &sets.initial_set.centre);
-        let inputs = shifted(&case.inputs, &sets.input_set.centre);
+        let (start, inputs) = self.nominal();
         let mut motion = Motion::new(problem.dynamics(), case, &start, &inputs);
         let mut best = self.nearest(pair, &motion, &start, &inputs);
         let mut sample = (pair.step + 1).min(samples - 1);
@@ -70,19 +94,7 @@ impl Approach<'_> {
             let Some(q) = motion.states.get(sample * 2 * n..sample * 2 * n + n) else { break };
             let functional =
                 [self.slope(pair, q, case.grid.times()[sample]), vec![0.0; n]].concat();
-            let (by_start, by_input) = motion.adjoint(case, sample, &functional);
-            let vertex = |x: f64, r: f64, slope: f64| if slope > 0.0 { x - r } else { x + r };
-            let radii = &sets.initial_set.radius;
-            let start: Vec<f64> =
-                (0..2 * n).map(|i| vertex(start[i], radii[i], by_start[i])).collect();
-            let by_input = held(by_input, n, samples, problem.settings().disturbance);
-            let radii = &sets.input_set.radius;
-            let inputs: Vec<f64> = inputs
-                .iter()
-                .zip(by_input)
-                .enumerate()
-                .map(|(at, (u, slope))| vertex(*u, radii[at % n], slope))
-                .collect();
+            let (start, inputs) = self.vertices(&motion, sample, &functional);
             motion = Motion::new(problem.dynamics(), case, &start, &inputs);
             let found = self.nearest(pair, &motion, &start, &inputs);
             let is_closer = match (&found, &best) {
@@ -100,6 +112,37 @@ impl Approach<'_> {
         best
     }
 
+    /// Returns the start and the inputs of the nominal motion.
+    pub(super) fn nominal(&self) -> (Vec<f64>, Vec<f64>) {
+        let Self { case, sets, .. } = self;
+        let shifted = |base: &[f64], centre: &[f64]| -> Vec<f64> {
+            base.iter().zip(centre.iter().cycle()).map(|(x, c)| x + c).collect()
+        };
+        let start = shifted(&case.start, &sets.initial_set.centre);
+        (start, shifted(&case.inputs, &sets.input_set.centre))
+    }
+
+    /// Returns the start and the inputs, at vertices of X0 and U, that make a functional of the
+    /// state at a sample the smallest, by the linearisation along a motion.
+    pub(super) fn vertices(
+        &self,
+        motion: &Motion,
+        sample: usize,
+        functional: &[f64],
+    ) -> (Vec<f64>, Vec<f64>) {
+        let Self { case, sets, problem, .. } = self;
+        let n = case.joints();
+        let (start, inputs) = self.nominal();
+        let (by_start, by_input) = motion.adjoint(case, sample, functional);
+        let by_input = held(by_input, n, case.grid.len(), problem.settings().disturbance);
+        let vertex = |x: f64, r: f64, slope: f64| if slope > 0.0 { x - r } else { x + r };
+        let radii = &sets.initial_set.radius;
+        let start = (0..2 * n).map(|i| vertex(start[i], radii[i], by_start[i])).collect();
+        let radii = &sets.input_set.radius;
+        let slopes = inputs.iter().zip(by_input).enumerate();
+        (start, slopes.map(|(at, (u, slope))| vertex(*u, radii[at % n], slope)).collect())
+    }
+
     /// Returns the sample of a motion at which the link is closest.
     fn nearest(
         &self,
@@ -110,7 +153,8 @@ impl Approach<'_> {
     ) -> Option<Witness> {
         let (n, times) = (self.case.joints(), self.case.grid.times());
         let distances = motion.states.chunks_exact(2 * n).zip(times);
-        let distances = distances.map(|(x, t)| (self.distance(pair, &x[..n], *t), *t));
+        let at = (pair.joint, pair.index);
+        let distances = distances.map(|(x, t)| (self.distance(at, &x[..n], *t), *t));
         let (distance, time) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let samples = motion.states.len() / (2 * n);
         Some(Witness {
@@ -119,6 +163,7 @@ impl Approach<'_> {
             distance,
             time,
             start: start.to_vec(),
+            stop: None,
             inputs: inputs[..samples * n].to_vec(),
             times: times[..samples].to_vec(),
             states: motion.states.clone(),
@@ -126,12 +171,12 @@ impl Approach<'_> {
     }
 
     /// Returns the slope of the distance by the positions, n.
-    fn slope(&self, pair: &Clearance, q: &[f64], time: f64) -> Vec<f64> {
+    pub(super) fn slope(&self, pair: &Clearance, q: &[f64], time: f64) -> Vec<f64> {
         let mut moved = q.to_vec();
         let mut by = |i: usize| {
             let mut at = |step: f64| {
                 moved[i] = q[i] + step;
-                let distance = self.distance(pair, &moved, time);
+                let distance = self.distance((pair.joint, pair.index), &moved, time);
                 moved[i] = q[i];
                 distance
             };
@@ -140,11 +185,12 @@ impl Approach<'_> {
         (0..q.len()).map(&mut by).collect()
     }
 
-    /// Returns the distance of a link from an obstacle in floating point.
-    fn distance(&self, pair: &Clearance, q: &[f64], time: f64) -> f64 {
-        let frame = &self.problem.robot().link_placements(q)[pair.joint];
-        let obstacle = &self.scene.obstacles[pair.index];
-        let of_link = self.body.capsules().iter().filter(|capsule| capsule.joint == pair.joint);
+    /// Returns the distance of the link that a joint moves from an obstacle, by their indices, in
+    /// floating point.
+    pub(super) fn distance(&self, (joint, index): (usize, usize), q: &[f64], time: f64) -> f64 {
+        let frame = &self.problem.robot().link_placements(q)[joint];
+        let obstacle = &self.scene.obstacles[index];
+        let of_link = self.body.capsules().iter().filter(|capsule| capsule.joint == joint);
         let distances = of_link.map(|capsule| {
             let place = |end| frame.rotation * Vector3::from(end) + frame.translation;
             let ends = [place(capsule.from), place(capsule.to)];

@@ -4,6 +4,7 @@ mod capsules;
 mod common;
 mod frames;
 mod margin;
+mod meshes;
 mod occupancy;
 mod schunk;
 mod stop;

@@ -60,7 +60,7 @@ fn sampled_states_of_the_lwa4p_lie_in_the_swept_capsules() {
 #[test]
 fn sampled_states_of_a_robot_with_a_slide_and_skew_axes_lie_in_the_swept_capsules() {
     let urdf = askew();
-    let capsules = Capsules::of_urdf(&urdf).unwrap();
+    let capsules = Capsules::of_urdf(&urdf, std::path::Path::new("")).unwrap();
     sampled(urdf.robot(), &capsules, 10_000, &SIZES);
     assert!(sampled(urdf.robot(), &capsules, 2_000, &[0.01]) > 0.9);
 }

@@ -1,15 +1,13 @@
-//! Simulated stops end within the enclosed ones. The simulation solves for the impulses of brakes
-//! and dry friction in each of its steps (Moreau), and shares no code with the enclosure.
+//! Simulated stops end within the enclosed ones.
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 use reachtube_conform::SuiteReach;
 use reachtube_reach::{Hyperrectangle, StepBounds};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use reachtube_verify::{
-    Answer, Body, Brakes, Capsules, Category, Deceleration, Obstacle, Path, Scene, Solid, Stop,
-    StopRule, Verification,
+    Answer, Body, Brakes, Capsules, Category, Deceleration, Obstacle, Path, Scene, SimulatedStop,
+    Solid, Stop, StopCase, StopRule, Verification,
 };
 
 use crate::common::{Random, distance, placed};
@@ -17,86 +15,8 @@ use crate::common::{Random, distance, placed};
 /// Step of the simulation, s.
 const STEP: f64 = 1e-4;
 
-/// Rounds of the projection of the impulses.
-const ROUNDS: usize = 100;
-
-/// The way and the time to standstill of each joint.
-struct Simulated {
-    way: Vec<f64>,
-    time: Vec<f64>,
-}
-
-/// One arm: positions, velocities, brake torques, the time from which they hold, and the torques
-/// of the drives before, in cycles of 2 ms.
-struct Case {
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    torque: Vec<f64>,
-    delay: f64,
-    drive: Vec<f64>,
-}
-
-/// Steps of the simulation in a cycle.
-const CYCLE: usize = 20;
-
-fn simulate(robot: &Robot, case: &Case) -> Simulated {
-    let n = robot.joint_count();
-    let (mut q, mut v) = (case.q.clone(), DVector::from_column_slice(&case.qd));
-    let mut stopped = Simulated { way: vec![0.0; n], time: vec![0.0; n] };
-    let mut impulse = vec![0.0; n];
-    let mut inverse = robot.mass_matrix(&q);
-    let mut load = robot.gravity_torque(&q);
-    let cycles = case.drive.len() / n;
-    for k in 0..40_000usize {
-        let time = STEP * k as f64;
-        let held = time >= case.delay + STEP * (CYCLE * cycles) as f64;
-        let cycle = k / CYCLE;
-        // Mass and gravity change little in a few steps.
-        if k % 5 == 0 {
-            inverse = robot.mass_matrix(&q).try_inverse().unwrap();
-            load = robot.gravity_torque(&q);
-        }
-        let mut bias = robot.inverse_dynamics(&q, v.as_slice(), &vec![0.0; n]);
-        if cycle < cycles {
-            bias -= DVector::from_column_slice(&case.drive[cycle * n..(cycle + 1) * n]);
-        }
-        let viscous = robot.viscous_torque(v.as_slice());
-        let mut next = &v - STEP * (&inverse * (bias + viscous));
-        let limit = |j: usize, sign: f64| {
-            let brake = if held { case.torque[j] } else { 0.0 };
-            let dry = robot.joints()[j].friction.dry_torque(load[j], sign * 1e-300);
-            STEP * (sign * brake + dry)
-        };
-        let limits: Vec<_> = (0..n).map(|j| (limit(j, -1.0), limit(j, 1.0))).collect();
-        (0..n).for_each(|j| next.axpy(-impulse[j], &inverse.column(j), 1.0));
-        for _ in 0..ROUNDS {
-            let mut largest = 0.0f64;
-            for j in 0..n {
-                let wanted: f64 = impulse[j] + next[j] / inverse[(j, j)];
-                let change = wanted.clamp(limits[j].0, limits[j].1) - impulse[j];
-                impulse[j] += change;
-                next.axpy(-change, &inverse.column(j), 1.0);
-                largest = largest.max(change.abs());
-            }
-            if largest < 1e-14 {
-                break;
-            }
-        }
-        for j in 0..n {
-            let way = STEP * 0.5 * (v[j] + next[j]);
-            q[j] += way;
-            stopped.way[j] += way;
-            if next[j].abs() > 1e-7 {
-                stopped.time[j] = time + STEP;
-            }
-        }
-        v = next;
-        if held && v.amax() < 1e-7 {
-            break;
-        }
-    }
-    stopped
-}
+/// Steps of the simulation in 2 ms.
+const STEPS: usize = 20;
 
 fn brakes() -> Brakes {
     let large = [45.0, 60.0];
@@ -149,12 +69,13 @@ fn compare(robot: &Robot, category: &Category, seed: u64, radius: f64, arms: usi
         };
         let mut between =
             |[low, high]: [f64; 2]| low + (high - low) * (0.5 + 0.5 * random.signed());
-        let torque = brakes.torque.iter().map(|range| between(*range)).collect();
+        let brake = brakes.torque.iter().map(|range| between(*range)).collect();
         let delay = between(brakes.delay);
         let near = |x: &f64, part: f64| x + radius * part;
         let q = q.iter().map(|x| near(x, random.signed())).collect();
         let qd = qd.iter().map(|x| near(x, random.signed())).collect();
-        let Simulated { way, time } = simulate(robot, &Case { q, qd, torque, delay, drive });
+        let case = StopCase { q, qd, brake, delay, error: vec![0.0; 6], drive };
+        let SimulatedStop { way, time, .. } = case.simulate(robot, STEPS).unwrap();
         for (j, joint) in joints.iter().enumerate() {
             // The simulation is of first order at standstill: off by its step.
             let (slack, [low, high]) = (2.0 * STEP, joint.way);
@@ -300,9 +221,15 @@ fn simulated_stops_stay_as_far_from_an_obstacle_as_is_proved() {
             let near = |x: &f64, random: &mut Random| x + 1e-3 * random.signed();
             let start: Vec<f64> = q.iter().map(|x| near(x, &mut random)).collect();
             let speed = qd.iter().map(|x| near(x, &mut random)).collect();
-            let torque = brakes().torque.iter().map(|[least, _]| *least).collect();
-            let case = Case { q: start.clone(), qd: speed, torque, delay: 0.03, drive: Vec::new() };
-            let way = simulate(&robot, &case).way;
+            let case = StopCase {
+                q: start.clone(),
+                qd: speed,
+                brake: brakes().torque.iter().map(|[least, _]| *least).collect(),
+                delay: 0.03,
+                error: vec![0.0; 6],
+                drive: Vec::new(),
+            };
+            let way = case.simulate(&robot, STEPS).unwrap().way;
             let end: Vec<f64> = start.iter().zip(&way).map(|(q, way)| q + way).collect();
             for capsule in capsules.as_slice() {
                 let name = body.joint_name(capsule.joint);

@@ -91,10 +91,8 @@ pub(crate) struct Arguments {
     pub settings: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArguments,
-    /// Cut recordings into windows of this length, above 0 s, each a suite of its own.
-    ///
-    /// Torques of motors or links are filtered first, less gravity and dry friction. The data may
-    /// be logs; `check`, `reach`, `report` and `export` do the same to theirs.
+    /// Cut recordings, or logs as they are, into windows of this length, above 0 s, each a suite of
+    /// its own
     #[arg(long, help_heading = "Data", value_name = "SECONDS", value_parser = seconds)]
     #[arg(allow_negative_numbers = true, conflicts_with = "until")]
     pub horizon: Option<f64>,
@@ -136,11 +134,11 @@ pub(crate) struct Arguments {
     pub report: Option<PathBuf>,
 }
 
-const GROUPS: Choices = &[
+pub(crate) const GROUPS: Choices = &[
     ("inertia", "motor inertias and densities of links"),
     ("viscous", "viscous friction"),
     ("cubic", "quadratic and cubic viscous friction"),
     ("coulomb", "Coulomb friction"),
-    ("warm-up", "viscous friction that changes from run to run"),
+    ("warm-up", "friction that changes with temperatures, or from run to run"),
     ("payload", "a point mass at the last link's frame"),
 ];

@@ -5,5 +5,5 @@ mod run;
 mod sets;
 mod settings;
 
-pub(crate) use arguments::Arguments;
+pub(crate) use arguments::{Arguments, GROUPS};
 pub(crate) use run::{page_of, run};

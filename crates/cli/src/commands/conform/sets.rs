@@ -53,6 +53,10 @@ pub(crate) struct SetArguments {
         value_parser = choice::<InitialLimit>(INITIAL_LIMITS)
     )]
     pub initial_limit: InitialLimit,
+    /// Widen U by the dry friction that is possible near standstill, for motions whose joints stick
+    /// or slip at other times
+    #[arg(long, hide_short_help = true, help_heading = "Sets")]
+    pub stiction: bool,
     /// Weights of the states in the cost: 1, 1 over the largest deviation, or 2 or 2n numbers
     /// between 1e-9 and 1e9, positions first
     #[arg(
@@ -64,9 +68,8 @@ pub(crate) struct SetArguments {
         allow_hyphen_values = true
     )]
     pub weights: String,
-    /// Measurement noise V: none, fitted, or 2 or 2n radii up to 1e9, in rad, then rad/s.
-    ///
-    /// Fitted radii are at most the sensor noise's.
+    /// Measurement noise V: none, fitted up to the sensors' noise, or 2 or 2n radii up to 1e9, in
+    /// rad, then rad/s
     #[arg(
         long,
         help_heading = "Sets",
@@ -101,8 +104,7 @@ pub(crate) struct SetArguments {
         value_parser = choice::<Equations>(EQUATIONS)
     )]
     pub equations: Equations,
-    /// Motions that are held out, such as M1,N*: the sets are scaled until they enclose these too,
-    /// which bounds the probability that the next motion leaves them
+    /// Motions that are held out, such as M1,N*: the sets are scaled until they enclose these too
     #[arg(long, help_heading = "Sets", value_name = "MOTION,..", value_delimiter = ',')]
     pub calibrate: Vec<String>,
     /// Method that finds the sets
@@ -161,6 +163,7 @@ impl SetArguments {
             notion: self.notion,
             states: self.states,
             initial_limit: self.initial_limit,
+            stiction: self.stiction,
             weights: match self.weights.as_str() {
                 "unit" => Weights::Unit,
                 "spread" => Weights::Spread,

@@ -40,7 +40,7 @@ pub(crate) struct Arguments {
     /// Seed of the motions
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// A tenth of the motions, runs and campaigns, and no exact notion: for a first look
+    /// A tenth of the motions and runs, one campaign, and no exact notion: for a first look
     #[arg(long)]
     pub small: bool,
 }
@@ -176,7 +176,7 @@ impl Sizes {
             campaign: CampaignOptions { motions: 4, runs: 3, poses: 100, friction: 1, ..campaign },
             table1: Table1Options { motions: 5, ..table1 },
             table2: Table2Options { notions: vec![Notion::Hull], ..table2 },
-            coverage: CoverageOptions { campaigns: 2, next: 100, ..coverage },
+            coverage: CoverageOptions { campaigns: 1, next: 100, ..coverage },
         }
     }
 }

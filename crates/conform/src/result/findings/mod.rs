@@ -8,6 +8,7 @@ mod limits;
 mod new_motions;
 mod plausibility;
 mod sets;
+mod stiction;
 mod vacuous;
 mod verdict;
 pub(super) mod words;
