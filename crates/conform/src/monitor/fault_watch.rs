@@ -16,8 +16,8 @@ pub(crate) enum Task {
     Ripple { products: Vec<[f64; 5]>, load: f64, count: u64 },
     /// Learns the range of each number.
     Ranges(Vec<Option<Range>>),
-    /// Learns by which factors the ranges hold other motions: the ranges of sudden torques, and
-    /// those of drags and the payload.
+    /// Learns by which factors the ranges hold other motions: first the ranges of sudden
+    /// torques, then the ranges of drags and the payload.
     Scores { ranges: Vec<Option<Range>>, largest: [f64; 2] },
     /// Raises an alarm when a number leaves its range.
     Watch { ranges: Vec<Option<Range>>, outside: Vec<bool> },

@@ -28,9 +28,9 @@ impl HealthyMotion {
     ///
     /// # Guarantee
     ///
-    /// 2/(n + 1) for the n recordings that scale the ranges by two factors, on average over the draw
-    /// of these and of the next one, if they are exchangeable: their order does not matter. The
-    /// margin is room beyond that, of which nothing is proved.
+    /// 2/(n + 1) for the n recordings that scale the ranges by two factors, on average over the
+    /// draw of these and of the next one, if they are exchangeable: their order does not matter.
+    /// The margin is room beyond that, of which nothing is proved.
     #[must_use]
     pub fn bound(&self) -> f64 {
         (2.0 / (self.scored as f64 + 1.0)).min(1.0)

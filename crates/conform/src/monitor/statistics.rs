@@ -12,7 +12,7 @@ const MEMORY: f64 = 10.0;
 const LEAST: f64 = 0.05;
 const PRIOR: f64 = 0.1;
 
-/// What statistics need to know of healthy motion.
+/// What statistics take from healthy motion.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Shape {
     /// The speed above which a joint counts as moving, n; infinite for a joint that hardly moves.
@@ -41,8 +41,8 @@ pub(crate) struct Statistics {
     means: Vec<Parts>,
     /// What is above the means, n; `None` where a joint has not moved for long enough.
     pub above: Vec<Option<Parts>>,
-    /// Of each joint the sums of 1, of the torque along the motion, and of the weight along the
-    /// motion, by which a drag is estimated.
+    /// Sums for each joint, by which its drag is estimated: of 1, of the torque along the motion,
+    /// and of the weight along the motion, n.
     sums: Vec<Parts>,
     /// The sums of the squared weight, and of the weight times the torque.
     payload: [f64; 2],

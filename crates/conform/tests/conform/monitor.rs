@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use reachtube_conform::data::{InputCorrection, JointCorrection};
-use reachtube_conform::monitor::{Leave, Monitor, Schedule};
+use reachtube_conform::monitor::{HealthyMotion, Leave, Monitor, Schedule};
 use reachtube_conform::settings::Equations;
-use reachtube_conform::{Check, Model, Settings, Setup, Silent};
+use reachtube_conform::{Check, Error, Model, Settings, Setup, Silent};
 use reachtube_recordings::{DataSet, MemoryRuns, ReadOptions, Run, RunSource, SampleError, Torque};
 use reachtube_robot::Robot;
 
@@ -138,6 +138,38 @@ fn windows_overlap_and_each_says_first_that_it_is_left() {
     assert_eq!(of_window.count(), count);
 }
 
+/// Some of the motions as a source.
+fn healthy(robot: &Robot, count: usize) -> MemoryRuns {
+    let mut runs = MemoryRuns::default();
+    for (index, run) in faulty(robot, 300).into_iter().take(count).enumerate() {
+        runs.push(&format!("{index}"), None, None, run);
+    }
+    runs
+}
+
+#[test]
+fn alarms_are_calibrated_by_healthy_motion_and_leave_the_windows_as_they_are() {
+    let robot = bent();
+    let model = model(&robot, Settings::new(Torque::Compensated, 2), None);
+    let schedule = Schedule::with_horizon(0.2, STEP);
+    let learn = |count| HealthyMotion::learn(&model, schedule, &healthy(&robot, count));
+    assert!(matches!(learn(1), Err(Error::TooFewHealthy { count: 1 })));
+    let known = learn(4).unwrap();
+    assert_eq!((known.bound(), known.ranges().len()), (2.0 / 3.0, 5));
+    assert!(known.ranges().iter().flatten().all(|[low, high]| low < high));
+    for run in faulty(&robot, 300) {
+        let mut alone = Monitor::new(&model, schedule).unwrap();
+        let mut watching = Monitor::new(&model, schedule).unwrap();
+        watching.watch(&known).unwrap();
+        assert_eq!(replay(&mut alone, &run), replay(&mut watching, &run));
+        // These motions are the healthy ones.
+        assert_eq!(watching.totals(), alone.totals());
+        assert_eq!(watching.used(), alone.used());
+    }
+    let other = known.ranges()[0].map_or(0.0, |[_, high]| high);
+    assert!(other > 0.0, "{known:?}");
+}
+
 #[test]
 fn samples_between_the_even_times_are_interpolated() {
     let robot = bent();
@@ -195,7 +227,10 @@ fn a_sample_allocates_nothing() {
             ..InputCorrection::default()
         };
         let model = model(&robot, settings, Some(correction));
-        let mut monitor = Monitor::new(&model, Schedule::with_horizon(0.2, STEP)).unwrap();
+        let schedule = Schedule::with_horizon(0.2, STEP);
+        let mut monitor = Monitor::new(&model, schedule).unwrap();
+        let healthy = HealthyMotion::learn(&model, schedule, &healthy(&robot, 4)).unwrap();
+        monitor.watch(&healthy).unwrap();
         let run = &faulty(&robot, 100)[0];
         let mut outside = 0;
         let allocations = allocation_counter::measure(|| {
