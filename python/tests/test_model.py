@@ -61,7 +61,7 @@ def built(
 
 @dataclass
 class OfFiles:
-    """A model of a robot file and a folder of logs, and what was said meanwhile."""
+    """A model of a robot file and a folder of logs, and what it reported."""
 
     file: Path
     folder: Path
