@@ -64,7 +64,7 @@ def built(arm: rt.Robot, logs: list[rt.Run], choices: Path) -> rt.BuiltModel:
 
 @dataclass
 class OfFiles:
-    """A model of a robot file and a folder of logs, and what was said meanwhile."""
+    """A model of a robot file and a folder of logs, and what it reported."""
 
     file: Path
     folder: Path

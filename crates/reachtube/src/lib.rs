@@ -4,17 +4,16 @@ pub mod export;
 pub mod prelude;
 
 pub use reachtube_abstraction::{
-    self as abstraction, Abstraction, ExpansionPoint, ModelKind, OperatingBox, PolynomialModel,
+    self as abstraction, Abstraction, ExpansionPoint, ModelKind, PolynomialModel,
 };
-pub use reachtube_conform::tube::{Enclosure, Witness};
 pub use reachtube_conform::{
-    self as conform, Check, Conformance, Dynamics, Keep, Model, Problem, Progress, Settings, Setup,
-    Silent, SuiteReach, Tube, UncertaintySets, Verdict, check, conform, explain, reach,
+    self as conform, Check, Conformance, Keep, Model, Problem, Progress, Settings, Setup, Silent,
+    Tube, check, conform, explain, reach,
 };
 #[cfg(feature = "report")]
 pub use reachtube_experiment::{Error, Result, campaign, demo, reproduce, virtual_robot};
 pub use reachtube_files::{TOOL, printable, write};
-pub use reachtube_identify::{self as identify, Identification, IdentifySettings, identify};
+pub use reachtube_identify::{self as identify, Identification, identify};
 #[cfg(feature = "report")]
 pub use reachtube_page as page;
 pub use reachtube_pipeline as pipeline;

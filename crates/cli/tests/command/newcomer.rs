@@ -1,6 +1,7 @@
 //! The path of a newcomer, as the guide has it.
 
 use crate::fixture::Lab;
+use crate::short::is_short_of_the_demo;
 
 /// Returns the commands of the first block of a guide.
 fn commands(guide: &str) -> Vec<String> {
@@ -11,7 +12,7 @@ fn commands(guide: &str) -> Vec<String> {
 }
 
 #[test]
-fn three_commands_lead_to_a_verified_stop_with_its_page() {
+fn three_commands_lead_to_a_verified_stop_with_its_page_in_short_answers() {
     let lab = Lab::new();
     let commands = commands(include_str!("../../../../docs/verify.md"));
     let [demo, stop, verify] = &commands[..] else { panic!("{commands:?}") };
@@ -19,7 +20,7 @@ fn three_commands_lead_to_a_verified_stop_with_its_page() {
         let arguments = command.strip_prefix("reachtube ").unwrap();
         lab.run(&format!("{arguments}{more}"))
     };
-    run(demo, " --quiet").exits(0);
+    is_short_of_the_demo(&lab, &run(demo, " --quiet").exits(0).stdout);
     let stop = run(stop, " --every 20").exits(0).stdout;
     assert!(stop.starts_with("stands: from each of "), "{stop}");
     assert!(lab.read("stops/stop.html").contains("Annex B"));

@@ -122,7 +122,7 @@ type Campaign = (Stated, Vec<(f64, f64)>);
 ///
 /// # Examples
 ///
-/// ```
+/// ```no_run
 /// use reachtube_experiment::reproduce::{CoverageOptions, coverage};
 ///
 /// let few = CoverageOptions { campaigns: 1, next: 5, seed: 1 };
