@@ -4,13 +4,14 @@
 //! once in a monomial whose higher powers are bounded separately: the polynomial is affine in each.
 //! Whatever the other factors are, its extrema over the chosen factors are therefore at vertices of
 //! their box. At one vertex the terms of Σ_S a_S Π_{i ∈ S} x_i cancel, which a sum of ranges does
-//! not show. All 2ⁿ vertices take n 2ⁿ products together.
+//! not show. All 2ⁿ vertices take n 2ⁿ products together. The vertices of the last two factors are
+//! the lanes of a vector, over which each term is spread when it is added.
 //!
 //! Where both x and x² are chosen, x³ is x times a range, so that the polynomial is affine in the
 //! pair. The vertices then belong to a trapezoid around the parabola: (±r, r²) and, on the tangents
 //! there, (±r/2, 0). For an angle they are (±sin r, 1 - cos r) and (±tan(r/2), 0).
 
-use reachtube_scalar::Interval;
+use reachtube_scalar::{Dispatch, Interval, Kernel, Lanes, Lanewise};
 
 use crate::polynomial::expansion::power_table::PowerTable;
 
@@ -51,13 +52,33 @@ impl Monomial {
     }
 }
 
+/// Largest number of factors whose vertices are the lanes of a vector.
+const LANE_FACTORS: usize = 2;
+
+/// Number of factors whose values at all vertices stay in the nearest cache.
+const BLOCK: usize = 8;
+
+/// Number of vertices of the last factors.
+const LANES: usize = 1 << LANE_FACTORS;
+
+/// One number for each vertex of the last factors.
+type Vector = Lanes<LANES>;
+
 /// The ends of a chosen factor, divided by its largest magnitude.
 #[derive(Debug)]
 struct FactorEnds {
     /// Ends where the square of the factor is smallest, and ends where it is largest.
     ends: [[f64; 2]; 2],
-    /// Number of consecutive vertices with the same ends.
-    run: usize,
+    /// The factor that is the square of this one, if it is chosen; it comes later.
+    square: Option<usize>,
+}
+
+impl FactorEnds {
+    /// Returns both ends at a vertex, which has one bit per factor.
+    #[inline(always)]
+    fn at(&self, vertex: usize) -> [f64; 2] {
+        self.ends[self.square.map_or(0, |square| vertex >> square & 1)]
+    }
 }
 
 /// Bounds of polynomials over the vertices of chosen factors; scratch memory for one polynomial
@@ -72,8 +93,13 @@ pub(crate) struct VertexBound {
     parts: Vec<Monomial>,
     /// Weight of each factor: the sum of the magnitudes of the terms that contain it.
     weights: Vec<f64>,
-    /// Middle and radius of each coefficient a_S, later of the value at each vertex.
-    values: Vec<[f64; 2]>,
+    /// Number of factors whose vertices are not lanes: the first ones.
+    outer: usize,
+    /// Products of the ends of the last factors, and of their magnitudes, for each set of these.
+    spread: [[Vector; 2]; LANES],
+    /// Middle and radius of each coefficient a_S, later of the value at each vertex, where S has
+    /// the first factors.
+    values: Vec<[Vector; 2]>,
 }
 
 impl VertexBound {
@@ -85,15 +111,18 @@ impl VertexBound {
             factors: Vec::with_capacity(most),
             parts: vec![Monomial::ONE; powers.len()],
             weights: vec![0.0; powers.len()],
-            values: Vec::with_capacity(1 << most),
+            outer: 0,
+            spread: [[Vector::from(1.0); 2]; LANES],
+            values: Vec::with_capacity(1 << most.saturating_sub(LANE_FACTORS)),
         }
     }
 
     /// Starts a new sum and divides the powers into chosen factors and all others.
     pub(crate) fn divide(&mut self, powers: &PowerTable, chosen: &[usize]) {
         self.factors.clear();
+        self.outer = chosen.len().saturating_sub(LANE_FACTORS);
         self.values.clear();
-        self.values.resize(1 << chosen.len(), [0.0; 2]);
+        self.values.resize(1 << self.outer, [Vector::from(0.0); 2]);
         for (start, powers) in powers.lists() {
             let bit = |index: usize| chosen.iter().position(|own| *own == index).map(|i| 1 << i);
             let (odd, even) = (bit(start), bit(start + 1).filter(|_| powers.len() > 1));
@@ -109,7 +138,16 @@ impl VertexBound {
             let waist = trapezoid.map(|(_, waist)| waist).filter(|_| square.is_some());
             let whole = [side.lo() / size, side.hi() / size];
             let ends = waist.map_or([whole; 2], |waist| [[-waist, waist], [-1.0, 1.0]]);
-            self.factors.push(FactorEnds { ends, run: 1 << square.unwrap_or(chosen.len()) });
+            self.factors.push(FactorEnds { ends, square: square.filter(|_| waist.is_some()) });
+        }
+        for (set, spread) in self.spread.iter_mut().enumerate() {
+            let lanes = self.factors[self.outer..].iter().enumerate();
+            let lanes = lanes.filter(|(i, _)| set >> i & 1 == 1);
+            *spread = lanes.fold([Vector::from(1.0); 2], |[product, magnitude], (i, factor)| {
+                let end = |lane: usize| factor.at(lane << self.outer)[lane >> i & 1];
+                let ends = Vector::from_lanes(end);
+                [product * ends, magnitude * ends.map(f64::abs)]
+            });
         }
     }
 
@@ -123,23 +161,18 @@ impl VertexBound {
     #[inline]
     pub(crate) fn add(&mut self, c: f64, monomial: Monomial) {
         let [lo, hi] = monomial.range;
-        let [middle, radius] = &mut self.values[monomial.chosen as usize];
-        *middle += c * (0.5 * (lo + hi));
-        *radius += c.abs() * (0.5 * (hi - lo));
+        let set = monomial.chosen as usize;
+        let [product, magnitude] = self.spread[set >> self.outer];
+        let [middle, radius] = &mut self.values[set & ((1 << self.outer) - 1)];
+        *middle += product * Vector::from(c * (0.5 * (lo + hi)));
+        *radius += magnitude * Vector::from(c.abs() * (0.5 * (hi - lo)));
     }
 
     /// Returns the range of the sum, up to [`VERTEX_ROUNDINGS`] per factor of each term; `None`
     /// where it is not a number.
     pub(crate) fn range(&mut self) -> Option<Interval> {
-        for (i, FactorEnds { ends, run }) in self.factors.iter().enumerate().rev() {
-            for (values, ends) in self.values.chunks_exact_mut(*run).zip(ends.iter().cycle()) {
-                values.chunks_exact_mut(2 << i).for_each(|pair| evaluate_at_ends(pair, *ends));
-            }
-        }
-        let larger = |[lo, hi]: [f64; 2], [middle, radius]: &[f64; 2]| {
-            [lo.min(middle - radius), hi.max(middle + radius)]
-        };
-        let [lo, hi] = self.values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], larger);
+        let factors = &self.factors[..self.outer];
+        let [lo, hi] = Vector::dispatch(Extrema { factors, values: &mut self.values });
         Interval::new(lo, hi)
     }
 
@@ -167,14 +200,65 @@ impl VertexBound {
     }
 }
 
+/// Evaluates the sum at all vertices, and finds the least and the largest value.
+struct Extrema<'a> {
+    /// The factors whose vertices are not lanes.
+    factors: &'a [FactorEnds],
+    /// Middle and radius of the coefficients, one pair for each set of factors.
+    values: &'a mut [[Vector; 2]],
+}
+
+impl Kernel for Extrema<'_> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn run(self) -> [f64; 2] {
+        let Self { factors, values } = self;
+        let block = factors.len().min(BLOCK);
+        for i in (block..factors.len()).rev() {
+            evaluate(values, factors, i, 0);
+        }
+        let (mut least, mut largest) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        for (b, values) in values.chunks_exact_mut(1 << block).enumerate() {
+            for i in (0..block).rev() {
+                evaluate(values, factors, i, b << block);
+            }
+            for [middle, radius] in values.iter() {
+                let (lo, hi) = ((*middle - *radius).to_array(), (*middle + *radius).to_array());
+                for lane in 0..LANES {
+                    least[lane] = if lo[lane] < least[lane] { lo[lane] } else { least[lane] };
+                    largest[lane] = if hi[lane] > largest[lane] { hi[lane] } else { largest[lane] };
+                }
+            }
+        }
+        [least.into_iter().fold(least[0], f64::min), largest.into_iter().fold(largest[0], f64::max)]
+    }
+}
+
+/// Evaluates the values from vertex `first` on at the ends of factor `i`.
+#[inline(always)]
+fn evaluate(values: &mut [[Vector; 2]], factors: &[FactorEnds], i: usize, first: usize) {
+    let square = factors[i].square.filter(|square| *square < factors.len());
+    let ends = [0, square.map_or(0, |square| 1 << square)].map(|vertex| {
+        let of = |end| move |lane: usize| factors[i].at(vertex | lane << factors.len())[end];
+        [Vector::from_lanes(of(0)), Vector::from_lanes(of(1))]
+    });
+    for (p, pair) in values.chunks_exact_mut(2 << i).enumerate() {
+        let side = square.map_or(0, |square| (first + (p << (i + 1))) >> square & 1);
+        evaluate_at_ends(pair, ends[side]);
+    }
+}
+
 /// Replaces coefficients without a factor (first half) and with it (second half) by values at the
 /// two ends of the factor.
-fn evaluate_at_ends(pair: &mut [[f64; 2]], [lo, hi]: [f64; 2]) {
+#[inline(always)]
+fn evaluate_at_ends(pair: &mut [[Vector; 2]], [lo, hi]: [Vector; 2]) {
+    let magnitudes = [lo, hi].map(|end| end.map(f64::abs));
     let (without, with) = pair.split_at_mut(pair.len() / 2);
     for (x, y) in without.iter_mut().zip(with) {
         let ([a, b], [c, d]) = (*x, *y);
-        *x = [a + c * lo, b + d * lo.abs()];
-        *y = [a + c * hi, b + d * hi.abs()];
+        *x = [a + c * lo, b + d * magnitudes[0]];
+        *y = [a + c * hi, b + d * magnitudes[1]];
     }
 }
 
