@@ -19,7 +19,7 @@ from ._findings import Finding, Report
 from ._flowpipe import Flowpipe, flowpipe
 from ._identify import Identification, identify
 from ._model import Check, Model
-from ._monitor import Leave, Monitor, monitor
+from ._monitor import Alarm, Leave, Monitor, monitor
 from ._polynomial import Polynomial, cos, sin, variables
 from ._prepare import prepare
 from ._reach import ReachableSet, reach, report
@@ -50,6 +50,7 @@ __version__ = _version()
 
 __all__ = [
     "Abstraction",
+    "Alarm",
     "AnnexRow",
     "Box",
     "BuiltModel",

@@ -12,9 +12,11 @@ from . import _reachtube
 from ._arrays import Array, frozen, numbers, real
 from ._findings import Finding, findings_of
 from ._model import text_of
+from ._recordings import source
 
 if TYPE_CHECKING:
     from ._model import Model
+    from ._settings import Data
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,24 @@ class Leave:
     """Whether it is proved that no disturbance of the model explains the window."""
     first: bool
     """Whether it is the first value of its window outside."""
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """A number outside its range in healthy motion: calibrated, not proved."""
+
+    time: float
+    """Time of the sample, s."""
+    fault: Literal["push", "drag", "payload"]
+    """What changed: a sudden torque, the friction of a joint, or the mass at the tip."""
+    joint: int | None
+    """The joint, from 1; ``None`` for the payload."""
+    value: float
+    """The number, N m or kg."""
+    low: float
+    """The least number without an alarm."""
+    high: float
+    """The largest number without an alarm."""
 
 
 class Monitor:
@@ -92,8 +112,18 @@ class Monitor:
         return [Leave(*left) for left in self._native.finish()]
 
     @property
+    def alarms(self) -> list[Alarm]:
+        """All alarms so far; none unless the monitor was made with ``healthy``."""
+        return [Alarm(*alarm) for alarm in self._native.alarms()]  # type: ignore[arg-type]
+
+    @property
+    def alarm_bound(self) -> float | None:
+        """How probable an alarm is, at most, in one more healthy recording."""
+        return self._native.alarm_bound()
+
+    @property
     def findings(self) -> list[Finding]:
-        """What was found so far: the verdict, then the first value outside."""
+        """What was found so far: the verdict, the first value outside, the first alarm."""
         return findings_of(self._native.findings())
 
     @property
@@ -159,6 +189,7 @@ def monitor(
     every: float | None = None,
     max_gap: float | None = None,
     differentiate: bool = False,
+    healthy: Data | None = None,
 ) -> Monitor:
     """Return a monitor of a linear model for samples of a running robot.
 
@@ -176,6 +207,9 @@ def monitor(
         The longest time between two samples, s; by default 1.9 steps.
     differentiate
         Take velocities from the filtered positions.
+    healthy
+        At least two recordings of healthy motion, as samples are given: the monitor raises an
+        alarm, too, for a sudden torque, a drag or a payload outside its range in them.
 
     Examples
     --------
@@ -194,5 +228,6 @@ def monitor(
         optional("every", every),
         optional("max_gap", max_gap),
         bool(differentiate),
+        None if healthy is None else source(healthy),
     )
     return Monitor(native)

@@ -5,7 +5,7 @@ use std::path::Path;
 use pyo3::prelude::*;
 use reachtube::Model;
 use reachtube::conform::data::Side;
-use reachtube::conform::monitor::{Leave, Schedule};
+use reachtube::conform::monitor::{Alarm, Fault, Leave, Schedule};
 use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
 use reachtube::robot::{JointKind, Robot};
@@ -13,9 +13,13 @@ use reachtube::robot::{JointKind, Robot};
 use crate::arrays::{Input, Output, array, values};
 use crate::failure::{Failure, Result};
 use crate::findings::list;
+use crate::recordings::NativeSource;
 
 /// Time, window, joint, state, side, value, excess, radius, proved, first.
 type Left = (f64, f64, usize, String, &'static str, f64, f64, f64, bool, bool);
+
+/// Time, fault, joint, value, and the least and the largest value without an alarm.
+type Alarmed = (f64, &'static str, Option<usize>, f64, f64, f64);
 
 /// A monitor of a model.
 #[pyclass(name = "Monitor", module = "reachtube._reachtube")]
@@ -24,6 +28,8 @@ pub(crate) struct NativeMonitor {
     joints: Vec<(String, JointKind)>,
     /// The first value outside.
     first: Option<Leave>,
+    alarms: Vec<Alarm>,
+    alarm_bound: Option<f64>,
 }
 
 #[pymethods]
@@ -37,6 +43,7 @@ impl NativeMonitor {
         every: Option<f64>,
         max_gap: Option<f64>,
         differentiate: bool,
+        healthy: Option<PyRef<'_, NativeSource>>,
     ) -> PyResult<Self> {
         let made = || -> Result<Self> {
             let (model, _) = Model::parse(model, Path::new("the model"))?;
@@ -51,10 +58,17 @@ impl NativeMonitor {
                 true => VelocitySource::Differentiated,
                 false => VelocitySource::Recorded,
             };
-            let monitor = LiveMonitor::new(&model, schedule, velocity)?;
+            let mut monitor = LiveMonitor::new(&model, schedule, velocity)?;
+            let mut alarm_bound = None;
+            if let Some(healthy) = &healthy {
+                let known = LiveMonitor::learn(&model, schedule, velocity, &healthy.source)?;
+                monitor.watch(&known)?;
+                alarm_bound = Some(known.bound());
+            }
             let robot = Robot::from_description(&model.robot)?;
             let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind));
-            Ok(Self { monitor, joints: joints.collect(), first: None })
+            let (joints, alarms) = (joints.collect(), Vec::new());
+            Ok(Self { monitor, joints, first: None, alarms, alarm_bound })
         };
         made().map_err(|failure| failure.raised(py))
     }
@@ -83,6 +97,7 @@ impl NativeMonitor {
                 let left = left.map_err(wrong)?;
                 self.first = self.first.or(left.first().copied());
                 all.extend(left.iter().map(left_of));
+                self.alarms.extend_from_slice(self.monitor.alarms());
             }
             Ok(all)
         };
@@ -92,17 +107,32 @@ impl NativeMonitor {
     fn finish(&mut self) -> Vec<Left> {
         let left = self.monitor.finish();
         self.first = self.first.or(left.first().copied());
-        left.iter().map(left_of).collect()
+        let left = left.iter().map(left_of).collect();
+        self.alarms.extend_from_slice(self.monitor.alarms());
+        left
     }
 
-    /// Returns the findings, a JSON list: the verdict, and the first value outside.
+    /// Returns all alarms so far.
+    fn alarms(&self) -> Vec<Alarmed> {
+        self.alarms.iter().map(alarm_of).collect()
+    }
+
+    fn alarm_bound(&self) -> Option<f64> {
+        self.alarm_bound
+    }
+
+    /// Returns the findings, a JSON list: the verdict, the first value outside, the first alarm.
     fn findings(&self) -> String {
         let first = self.first.map(|leave| {
             let (name, kind) = &self.joints[leave.joint - 1];
             leave.finding(name, *kind)
         });
         let verdict = self.monitor.found().totals().finding();
-        list(&[verdict].into_iter().chain(first).collect::<Vec<_>>())
+        let alarm = self.alarms.first().map(|alarm| {
+            let joint = alarm.joint.map(|joint| &self.joints[joint - 1]);
+            alarm.finding(joint.map(|(name, kind)| (&**name, *kind)))
+        });
+        list(&[verdict].into_iter().chain(first).chain(alarm).collect::<Vec<_>>())
     }
 
     /// Samples, windows, windows left, rows, rows outside.
@@ -136,6 +166,16 @@ impl NativeMonitor {
     fn states<'py>(&self, py: Python<'py>, values: &[f64]) -> Output<'py> {
         array(py, values.to_vec(), &[values.len()])
     }
+}
+
+fn alarm_of(alarm: &Alarm) -> Alarmed {
+    let Alarm { time, fault, joint, value, range: [low, high] } = *alarm;
+    let fault = match fault {
+        Fault::Push => "push",
+        Fault::Drag => "drag",
+        Fault::Payload => "payload",
+    };
+    (time, fault, joint, value, low, high)
 }
 
 fn left_of(leave: &Leave) -> Left {

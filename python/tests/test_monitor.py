@@ -70,3 +70,14 @@ def test_a_model_that_is_not_linear_is_refused(robot: rt.Robot, data: rt.Recordi
     model = rt.conform(robot, data, torque="motor", order=2, until=0.02, suites=["A"])
     with pytest.raises(rt.ReachtubeError, match="not linear"):
         rt.monitor(model, step=0.004, horizon=0.1)
+
+
+def test_healthy_recordings_calibrate_alarms(model: rt.Model, robot: rt.Robot) -> None:
+    recordings = runs(robot, count=4)
+    watch = rt.monitor(model, step=0.004, horizon=0.1, healthy=recordings)
+    assert watch.alarm_bound == pytest.approx(0.4)
+    watch.push(*(getattr(recordings[0], name) for name in ("t", "q", "qd", "tau")))
+    assert watch.alarms == []
+    assert rt.monitor(model, step=0.004, horizon=0.1).alarm_bound is None
+    with pytest.raises(rt.ReachtubeError, match="1 recordings of healthy motion are too few"):
+        rt.monitor(model, step=0.004, horizon=0.1, healthy=recordings[:1])

@@ -103,9 +103,8 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         Ok(problem.with_setup(setup))
     };
     let fitted = with_numbers(steering)?;
-    if let Err(error) = fitted.robot().check_physical() {
-        return Err(Error::Fit(format!("{error}; give a larger weight to the pull")));
-    }
+    let refused = |error| Error::Fit(format!("{error}; give a larger weight to the pull"));
+    fitted.robot().check_physical().map_err(refused)?;
     let costs = [smallest(steering)?, smallest(&fitted)?];
     let left_out = Some(LeftOutMotions::from(&choice));
     let mut record = record(&fit, choice, Some(&found.numbers), costs)?;

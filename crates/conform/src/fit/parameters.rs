@@ -274,9 +274,8 @@ impl<'a> Parameters<'a> {
         };
         for (parameter, &number) in self.list.iter().zip(numbers) {
             let FreeParameter { quantity, joint, .. } = *parameter;
-            let drive = &robot.joints()[joint];
+            let (drive, corrected) = (&robot.joints()[joint], &mut correction.joints[joint]);
             let viscous = &drive.friction.viscous;
-            let corrected = &mut correction.joints[joint];
             match quantity {
                 Quantity::MotorInertia => {
                     let armature = drive.armature + self.inertia[joint] * (2.0 * number).exp_m1();

@@ -158,7 +158,7 @@ impl PaperPage<'_> {
                     ..case.table()
                 }))
                 @if !case.warnings.is_empty() {
-                    p.hint { "Warnings: " (case.warnings.join(". ")) "." }
+                    p.hint { "Warnings: " (sentences(&case.warnings)) }
                 }
             }
             p {
@@ -175,12 +175,17 @@ impl PaperPage<'_> {
         let Some(figure) = self.figures.iter().find(|figure| figure.number == number) else {
             return Markup::default();
         };
+        let is_same = |other: &TextTable| {
+            other.title == figure.table.title && other.rows == figure.table.rows
+        };
+        let mut before = self.figures.iter().filter(|other| other.number < number);
+        let is_known = before.any(|other| is_same(&other.table));
         html! {
             figure {
                 (wide_figure(&format!("Fig. {number}"), &figure.svg))
                 figcaption { b { "Fig. " (number) ". " } (figure.caption) " " (figure.paper) }
             }
-            (long_table(&figure.table))
+            @if !is_known { (long_table(&figure.table)) }
         }
     }
 
@@ -217,7 +222,7 @@ impl PaperPage<'_> {
             }
             @for part in self.table3.tables() { (long_table(&part)) }
             @if !self.table3.warnings.is_empty() {
-                p.hint { "Warnings: " (self.table3.warnings.join(". ")) "." }
+                p.hint { "Warnings: " (sentences(&self.table3.warnings)) }
             }
         }
     }
@@ -243,4 +248,10 @@ fn wide_figure(label: &str, svg: &str) -> Markup {
             (PreEscaped(svg))
         }
     }
+}
+
+/// Returns sentences one after another, each with one full stop at its end.
+fn sentences(texts: &[String]) -> String {
+    let ended = |text: &String| format!("{}.", text.trim_end_matches('.'));
+    texts.iter().map(ended).collect::<Vec<_>>().join(" ")
 }
