@@ -35,6 +35,7 @@ pub(crate) struct NativeMonitor {
 #[pymethods]
 impl NativeMonitor {
     #[new]
+    #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
         model: &str,

@@ -3,6 +3,7 @@
 //! "These sets enclose these runs" is a fact. Anything about the next motion is statistical, and
 //! needs motions that are independent and alike. Several suites of one motion count once.
 
+use reachtube_scalar::number::counted;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::verdict::Verdict;
@@ -178,8 +179,8 @@ impl Trust {
         let (count, of) = (self.motions, candidates.max(1) as f64);
         if of > count as f64 {
             let basis = format!(
-                "the {count} held-out motions calibrated {candidates} models in this folder, too \
-                 many to choose one of them"
+                "{} calibrated {candidates} models in this folder, too many to choose one of them",
+                counted(count, "held-out motion")
             );
             return Self::unknown(count, basis);
         }

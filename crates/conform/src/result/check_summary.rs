@@ -55,7 +55,9 @@ impl Check {
             },
         );
         let lost = self.verdict.lost.first().map(|lost| Remedy::until(lost.time));
-        let is_wide = model.calibration.is_none() && !self.verdict.conformant;
+        // The sets of `model` were widened by motions left out already.
+        let is_widened = model.calibration.is_some() || !model.allowance.is_empty();
+        let is_wide = !is_widened && !self.verdict.conformant;
         let helps = lost.or_else(|| is_wide.then(|| Remedy::new("calibrate", "MOTION,..")));
         summary.next = helps.map(|remedy| remedy.written_for(front_end));
         summary
