@@ -26,7 +26,8 @@ def rows_of_commands(builds, folder, options):
 def command(build, arguments, folder):
     """Returns the command of a build. The oldest builds know no --quiet, and name models
     otherwise."""
-    out = "model.json" if "conform" in arguments else "arm.toml"
+    # Newer builds overwrite no file of the oldest, which carries no mark.
+    out = f"{build.name}.json" if "conform" in arguments else f"{build.name}.toml"
     arguments = [*arguments, "--out", folder / out]
     if build.name == "now":
         return [build.command, "--quiet", *arguments]
