@@ -1,7 +1,7 @@
 //! The parts that all pages share: the document around a page, sections, and lists.
 
 use super::terms::Explained;
-use super::text::Text;
+use super::text::{Text, capital};
 use super::text_table::TextTable;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -44,6 +44,17 @@ pub fn document(title: &str, subtitle: &str, body: &Markup, scripts: &Markup) ->
 /// Returns the comment by which a later command recognises a file that it may replace.
 pub(super) fn own_mark() -> Markup {
     PreEscaped(format!("<!-- {} -->", reachtube_files::MARK))
+}
+
+/// Returns a verdict in the colour of `class`: its first words, up to a colon, are the heading.
+pub(super) fn verdict(class: &str, sentence: &str) -> Markup {
+    let (head, words) = sentence.split_once(": ").unwrap_or((sentence, ""));
+    html! {
+        div class={ "verdict " (class) } {
+            h2 { (Text(&capital(head))) }
+            p.words { (Explained(&capital(words))) }
+        }
+    }
 }
 
 /// Returns a section under a heading.

@@ -11,8 +11,9 @@ use reachtube_verify::{AnnexRow, Brakes, StopStudy, annex_table, recorded_table}
 
 use crate::chart::{Chart, Series, chart_svg};
 use crate::error::Error;
-use crate::skeleton::{document, section, wide_table};
-use crate::text::Text;
+use crate::skeleton::{document, section, verdict, wide_table};
+use crate::terms::Explained;
+use crate::text::{Text, capital};
 
 /// The file name of the page.
 pub const STOP_PAGE_FILE: &str = "stop.html";
@@ -49,13 +50,15 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
     let of = |category: u8| -> Vec<AnnexRow> {
         rows.iter().filter(|row| row.category == category).cloned().collect()
     };
+    let is_fine = study.outside().is_none() && study.is_proved();
+    let sentence = study.findings.first().map_or("", |verdict| &verdict.text);
     let body = html! {
-        (verdict(study))
+        (verdict(if is_fine { "ok" } else { "bad" }, sentence))
         (section("Category 0", &html! {
             p { "Drives off and brakes on at once, at full speed, extension and load. One joint \
                  moves when the stop begins; the three with the greatest distance are listed." }
             (laid_out(&annex_table(&of(0), &unit)))
-            @for note in notes { p { (Text(&note.text)) } }
+            @for note in notes { p { (Explained(&note.text)) } }
         }))
         @if !of(1).is_empty() {
             (section("Category 1", &html! {
@@ -83,24 +86,6 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
                     out as ISO 10218-1, Annex B, asks";
     out.write_all(document(&title, subtitle, &body, &Markup::default()).as_bytes())?;
     Ok(())
-}
-
-/// Returns the verdict in its colour.
-fn verdict(study: &StopStudy) -> Markup {
-    let ok = study.outside().is_none() && study.is_proved();
-    let sentence = study.findings.first().map_or("", |verdict| &verdict.text);
-    let (head, words) = sentence.split_once(": ").unwrap_or((sentence, ""));
-    html! {
-        div class=(if ok { "verdict ok" } else { "verdict bad" }) {
-            h2 { (Text(&capital(head))) }
-            p.words { (Text(&capital(words))) }
-        }
-    }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Returns a table of the library; all but names are numbers.

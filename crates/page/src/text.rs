@@ -8,6 +8,12 @@ pub(super) fn clean(text: &str) -> String {
     text.chars().map(|c| if allowed(c) { c } else { ' ' }).collect()
 }
 
+/// Returns a text that begins with a capital letter.
+pub(super) fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// A text from outside, which maud renders escaped and without the characters that XML forbids.
 pub(super) struct Text<'a>(pub(super) &'a str);
 

@@ -4,6 +4,7 @@ use std::io::Write;
 
 use maud::{Markup, PreEscaped, html};
 use reachtube_conform::result::Table;
+use reachtube_scalar::number::counted;
 use reachtube_verify::{
     Answer, Body, Obstacle, Scene, Solid, SweptCapsule, Verification, picture, summary, worst_first,
 };
@@ -12,8 +13,8 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::interactive::in_script;
 use crate::library::compressed_library;
-use crate::skeleton::{document, section, wide_table};
-use crate::text::Text;
+use crate::skeleton::{document, section, verdict, wide_table};
+use crate::text::{Text, capital};
 
 /// The file name of the page.
 pub const VERIFY_PAGE_FILE: &str = "verify.html";
@@ -80,7 +81,7 @@ pub fn write_verify_html(page: &VerifyPage, out: &mut impl Write) -> Result<(), 
     let order = worst_first(all);
     let worst = order.first().copied();
     let content = html! {
-        (verdict(worst.map(|worst| worst.answer), &sentence))
+        (verdict(class(worst.map(|worst| worst.answer)), &sentence))
         @if let Some(worst) = worst {
             (section("The worst motion", &shown(worst, page)))
         }
@@ -96,37 +97,21 @@ pub fn write_verify_html(page: &VerifyPage, out: &mut impl Write) -> Result<(), 
     });
     let subtitle = format!(
         "{} against {}: motions of the model, and where its links can be",
-        count(all.len(), "motion"),
-        count(scene.obstacles.len(), "obstacle")
+        counted(all.len(), "motion"),
+        counted(scene.obstacles.len(), "obstacle")
     );
     let document = document("Do the links stay clear?", &subtitle, &content, &scripts);
     out.write_all(document.as_bytes())?;
     Ok(())
 }
 
-fn count(number: usize, of: &str) -> String {
-    if number == 1 { format!("1 {of}") } else { format!("{number} {of}s") }
-}
-
-/// Returns the verdict in its colour.
-fn verdict(answer: Option<Answer>, sentence: &str) -> Markup {
-    let class = match answer {
-        Some(Answer::Safe) => "verdict ok",
-        Some(Answer::Unsafe) => "verdict bad",
-        _ => "verdict doubtful",
-    };
-    let (head, words) = sentence.split_once(": ").unwrap_or((sentence, ""));
-    html! {
-        div class=(class) {
-            h2 { (Text(&capital(head))) }
-            p.words { (Text(&capital(words))) }
-        }
+/// Returns the colour of a verdict.
+fn class(answer: Option<Answer>) -> &'static str {
+    match answer {
+        Some(Answer::Safe) => "ok",
+        Some(Answer::Unsafe) => "bad",
+        _ => "doubtful",
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// Returns a motion: its static picture, and the elements that the script fills.

@@ -31,7 +31,8 @@ pub(crate) fn vertices(path: &Path) -> Result<Vec<[f64; 3]>, Problem> {
         let problem = format!("is a file of the format `{extension}`, and only STL is read");
         return Err((problem, "export the mesh as STL"));
     }
-    let bytes = std::fs::read(path).map_err(|e| (format!("cannot be read: {e}"), EXPORT))?;
+    let unread = |e| (format!("cannot be read: {e}"), "give the path of an STL file");
+    let bytes = std::fs::read(path).map_err(unread)?;
     let mut file = Cursor::new(recognised(bytes));
     let broken = |e: std::io::Error| (format!("is not a complete STL file: {e}"), EXPORT);
     let reader = stl_io::create_stl_reader(&mut file).map_err(broken)?;

@@ -37,4 +37,5 @@ mod stop;
 mod terminal;
 mod verdicts;
 mod verify;
+mod verify_stops;
 mod wrong_inputs;

@@ -165,9 +165,9 @@ impl Program<'_> {
         [initial, input]
     }
 
-    /// Returns whether a row of recordings without which the sets were found leaves them, by more
-    /// than the rounding of recorded states. That decides at first samples: X0 hardly has to reach
-    /// them where each motion starts at its own state, and no factor of U helps.
+    /// Returns whether a row of recordings without which the sets were found leaves them by more
+    /// than the rounding of recorded states. Where each motion starts at its own state, X0 may be
+    /// as small as this rounding, and no factor of U encloses a first sample that misses it.
     pub(crate) fn is_missed(&self, index: RowIndex, excess: f64, unknowns: &Unknowns) -> bool {
         excess > STATE_ROUNDING && self.is_violated(index, excess, unknowns)
     }

@@ -55,7 +55,7 @@ impl Check {
             },
         );
         let lost = self.verdict.lost.first().map(|lost| Remedy::until(lost.time));
-        // The sets of `model` were widened by motions left out already.
+        // The command `model` has widened its sets for motions left out.
         let is_widened = model.calibration.is_some() || !model.allowance.is_empty();
         let is_wide = !is_widened && !self.verdict.conformant;
         let helps = lost.or_else(|| is_wide.then(|| Remedy::new("calibrate", "MOTION,..")));

@@ -13,8 +13,18 @@ impl Robot {
     ///
     /// Returns a [`RobotError`] with line, joint, value and remedy.
     pub fn from_toml(text: &str, origin: &str) -> Result<Self, RobotError> {
-        let description: RobotDescription = toml::from_str(text)
-            .map_err(|e| RobotError::Syntax { origin: origin.into(), message: e.to_string() })?;
+        let description: RobotDescription = toml::from_str(text).map_err(|e| {
+            if text.trim_start().starts_with('{') {
+                return RobotError::Invalid {
+                    origin: origin.into(),
+                    place: String::new(),
+                    problem: "the file is JSON, and no robot".into(),
+                    remedy: "name a TOML or URDF file; `model` writes robot.toml beside its model"
+                        .into(),
+                };
+            }
+            RobotError::Syntax { origin: origin.into(), message: e.to_string() }
+        })?;
         Self::checked(&description, |value| {
             let line = line_of(text, value.joint, value.key);
             (format!("{origin}:{line}"), place_of(&description, value))

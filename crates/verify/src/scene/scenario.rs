@@ -2,13 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Rotation3;
 use reachtube_reach::Hyperrectangle;
 use reachtube_robot::Robot;
+use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::{add_up, mul_down, mul_up, sub_up};
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::error::{Error, Result, line_of};
+use crate::kinematics::vector::{add, norm, point, scaled, sub};
 use crate::mesh::{Problem, vertices};
 use crate::scene::obstacle::{Obstacle, Solid};
 use crate::stop::brakes::Brakes;
@@ -20,9 +23,6 @@ pub(crate) const WALKING: f64 = 1.6;
 
 /// Number of parts into which a step is divided, at most, where its enclosure comes too close.
 const REFINE: u32 = 8;
-
-/// By which part a box around a mesh is larger than the mesh, far more than rounding.
-const MARGIN: f64 = 1e-12;
 
 /// A question: a model, recorded motions, and what the robot must stay clear of.
 #[derive(Debug)]
@@ -337,19 +337,26 @@ impl ObstacleTable {
     }
 }
 
+/// Returns the directions of the axes of a frame.
+fn axes([roll, pitch, yaw]: [f64; 3]) -> [[f64; 3]; 3] {
+    let rotation = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();
+    [0, 1, 2].map(|i| rotation.column(i).into_owned().into())
+}
+
 impl BoxTable {
     fn solid(&self) -> Solid {
-        let [roll, pitch, yaw] = self.rpy;
-        let rotation = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();
-        let axis = |i: usize| rotation.column(i).into_owned().into();
-        let axes = [axis(0), axis(1), axis(2)];
-        Solid::Box { centre: self.centre, axes, half: self.size.map(|side| 0.5 * side) }
+        let half = self.size.map(|side| 0.5 * side);
+        Solid::Box { centre: self.centre, axes: axes(self.rpy), half }
     }
 }
 
 impl MeshTable {
-    /// Returns the box around a mesh along the axes of its file, a little larger than rounding
-    /// makes it.
+    /// Returns the box around a mesh along the axes of its file.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding: the box contains the mesh, for its vertices as loaded and axes of
+    /// its frame that are rounded.
     fn around(&self, folder: &Path) -> core::result::Result<Solid, Problem> {
         let name = self.file.display();
         let all = vertices(&folder.join(&self.file))
@@ -359,16 +366,20 @@ impl MeshTable {
         }
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for (vertex, i) in all.iter().flat_map(|vertex| (0..3).map(move |i| (vertex, i))) {
-            low[i] = low[i].min(self.scale * vertex[i]);
-            high[i] = high[i].max(self.scale * vertex[i]);
+            low[i] = low[i].min(mul_down(self.scale, vertex[i]));
+            high[i] = high[i].max(mul_up(self.scale, vertex[i]));
         }
-        let [roll, pitch, yaw] = self.rpy;
-        let rotation = Rotation3::from_euler_angles(roll, pitch, yaw);
-        let middle = Vector3::from_fn(|i, _| 0.5 * (low[i] + high[i]));
-        let centre = rotation * middle + Vector3::from(self.position);
-        let largest = middle.amax().max(Vector3::from(self.position).amax());
-        let slack = MARGIN * (1.0 + largest);
-        let size = [0, 1, 2].map(|i| (high[i] - low[i]) * (1.0 + MARGIN) + slack);
-        Ok(BoxTable { centre: centre.into(), size, rpy: self.rpy }.solid())
+        let axes = axes(self.rpy);
+        let middle = [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
+        let place = (0..3).fold(point(self.position), |place, i| {
+            add(&place, &scaled(&point(axes[i]), Interval::point(middle[i])))
+        });
+        let centre = place.map(Interval::mid);
+        // The axes are orthonormal but for rounding, so that twice the error of the centre along
+        // each of them covers it.
+        let error = 2.0 * norm(&sub(&place, &point(centre)));
+        let half = [0, 1, 2]
+            .map(|i| add_up(sub_up(high[i], middle[i]).max(sub_up(middle[i], low[i])), error));
+        Ok(Solid::Box { centre, axes, half })
     }
 }

@@ -148,11 +148,12 @@ impl Watch<'_> {
             return Ok(());
         }
         let Arguments { step, horizon, every, max_gap, .. } = self.args;
-        let times = self.first.windows(2).map(|pair| pair[1].1.t - pair[0].1.t);
+        let first = std::mem::take(&mut self.first);
+        let times = first.windows(2).map(|pair| pair[1].1.t - pair[0].1.t);
         let mut steps: Vec<f64> = times.filter(|step| *step > 0.0).collect();
         steps.sort_by(f64::total_cmp);
         let Some(step) = step.or_else(|| steps.get(steps.len() / 2).copied()) else {
-            let number = self.first.last().map_or(1, |(number, _)| *number);
+            let number = first.last().map_or(1, |(number, _)| *number);
             return Err(wrong(number, "there are no two samples at increasing times"));
         };
         let step = rounded(step);
@@ -188,7 +189,7 @@ impl Watch<'_> {
             monitor.watch(&healthy)?;
         }
         self.monitor = Some(monitor);
-        for (number, sample) in std::mem::take(&mut self.first) {
+        for (number, sample) in first {
             self.judge(number, &sample)?;
         }
         Ok(())

@@ -92,3 +92,38 @@ fn a_multiaffine_polynomial_has_its_exact_range() {
     assert!(is_near(without, -3.0) && is_near(-without, -3.0));
     assert!(is_near(with, -3.0) && is_near(-with, -1.0), "{with:?}");
 }
+
+/// With as many factors as variables, the bound is the extremum over all vertices: for factors
+/// that are lanes of a vector only, for others beside them, and for more than fit into a block.
+#[test]
+fn all_vertices_are_tried_for_any_number_of_factors() {
+    for n in [2, 3, 7, 13] {
+        let term = |i: usize, j: usize| {
+            let mut exponents = vec![0; n];
+            (exponents[i], exponents[j]) = (1, 1);
+            let c = f64::from((7 * i + 3 * j) as u8 % 11) - 5.0;
+            TaylorTerm { exponents, coefficient: Interval::point(c) }
+        };
+        let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+        let terms: Vec<_> = pairs.map(|(i, j)| term(i, j)).collect();
+        let value = |vertex: usize| -> f64 {
+            let sign = |i: usize| if vertex >> i & 1 == 1 { 1.0 } else { -1.0 };
+            let of = |term: &TaylorTerm<Interval>| {
+                let factors = term.exponents.iter().enumerate().filter(|(_, e)| **e == 1);
+                term.coefficient.mid() * factors.map(|(i, _)| sign(i)).product::<f64>()
+            };
+            terms.iter().map(of).sum()
+        };
+        let values = (0..1 << n).map(value);
+        let [lo, hi] = values.fold([0.0_f64; 2], |[lo, hi], x| [lo.min(x), hi.max(x)]);
+        let plan = Recentring::new(&Angles::new(n, &[], terms.iter()), &terms);
+        let mut work = plan.workspace();
+        plan.recentre(&vec![0.0; n], &vec![1.0; n], &mut work);
+        plan.bound_errors(&vec![1.0; n], &mut work);
+        let mut powers = PowerTable::new(&vec![1; n]);
+        (0..n).for_each(|i| powers.set(i, Interval::new(-1.0, 1.0).unwrap()));
+        let [_, with] = ranges(&plan, &powers, n, &mut work);
+        assert!(with.lo() <= lo && with.lo() > lo - 1e-9, "{n}: {with:?} {lo}");
+        assert!(with.hi() >= hi && with.hi() < hi + 1e-9, "{n}: {with:?} {hi}");
+    }
+}
