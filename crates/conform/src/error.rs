@@ -79,8 +79,8 @@ pub enum Error {
     NotLinear,
     /// Healthy motion cannot be learnt from so few recordings.
     #[error(
-        "{count} recordings of healthy motion are too few; give at least 2, of which one half \
-         shapes the ranges and the other scales them"
+        "healthy motion needs at least 2 recordings, of which one half shapes the ranges and the \
+         other scales them, and has {count}; give more"
     )]
     TooFewHealthy {
         /// Number of recordings.

@@ -77,7 +77,8 @@ fn healthy_recordings_calibrate_alarms() {
     lab.write("one/run.csv", &text);
     lab.write("one/runs.csv", "file,suite\nrun.csv,A\n");
     let run = monitor(&lab, "--horizon 0.1 --healthy one", &text).exits(2);
-    assert!(run.stderr.contains("1 recordings of healthy motion are too few"), "{}", run.stderr);
+    assert!(run.stderr.contains("healthy motion needs at least 2 recordings"), "{}", run.stderr);
+    assert_eq!(run.stderr.matches("samples every").count(), 1, "{}", run.stderr);
 }
 
 #[test]

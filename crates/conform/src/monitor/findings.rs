@@ -1,6 +1,7 @@
 //! What a monitor found, as findings.
 
 use reachtube_robot::JointKind;
+use reachtube_scalar::number::counted;
 
 use crate::data::side::Side;
 use crate::monitor::leave::Leave;
@@ -33,9 +34,10 @@ impl Totals {
     #[must_use]
     pub fn finding(&self) -> Finding {
         let Self { samples, windows, left, rows, outside, alarms } = *self;
+        let raised = counted(alarms as usize, "alarm");
         let finding = if left == 0 && alarms > 0 {
             let text = format!(
-                "unlike healthy motion: {alarms} alarms; {samples} samples stayed in the sets of \
+                "unlike healthy motion: {raised}; {samples} samples stayed in the sets of \
                  all windows, of which {windows} ended"
             );
             Finding::new(Severity::Failure, Code::UnlikeHealthy, text)
@@ -49,7 +51,7 @@ impl Totals {
             let text = format!(
                 "left: {left} windows left their sets, {windows} ended; {outside} of {rows} rows \
                  are outside{}",
-                if alarms > 0 { format!("; {alarms} alarms") } else { String::new() }
+                if alarms > 0 { format!("; {raised}") } else { String::new() }
             );
             Finding::new(Severity::Failure, Code::LeftSet, text)
         };
