@@ -79,5 +79,5 @@ def test_healthy_recordings_calibrate_alarms(model: rt.Model, robot: rt.Robot) -
     watch.push(*(getattr(recordings[0], name) for name in ("t", "q", "qd", "tau")))
     assert watch.alarms == []
     assert rt.monitor(model, step=0.004, horizon=0.1).alarm_bound is None
-    with pytest.raises(rt.ReachtubeError, match="1 recordings of healthy motion are too few"):
+    with pytest.raises(rt.ReachtubeError, match="healthy motion needs at least 2 recordings"):
         rt.monitor(model, step=0.004, horizon=0.1, healthy=recordings[:1])
