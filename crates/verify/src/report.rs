@@ -6,6 +6,7 @@ use reachtube_scalar::number::at_least;
 use crate::body::body::Body;
 use crate::report_stops::triggers;
 use crate::scene::scenario::Scene;
+use crate::verdict::clearance::Clearance;
 use crate::verdict::findings::{findings, worst_first};
 use crate::verdict::stop_verdict::lower;
 use crate::verdict::verification::{Answer, Verification};
@@ -19,11 +20,33 @@ pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> String {
     let (verdict, advice) = findings.split_at(findings.len().min(1));
     let mut lines: Vec<String> = verdict.iter().map(|finding| finding.text.clone()).collect();
     lines.push(String::new());
-    lines.push(motions(&order).to_string());
+    lines.push(match order[..] {
+        [one] => links(one).to_string(),
+        _ => motions(&order).to_string(),
+    });
     lines.extend(triggers(all).map(|(table, words)| format!("{table}{words}\n")));
     lines.push(margins(all, body).to_string());
     lines.extend(advice.iter().take(3).map(|finding| finding.text.clone()));
     lines.join("\n").trim_end().to_string() + "\n"
+}
+
+/// Returns how close each link comes to its closest obstacle on one motion, as a table.
+fn links(v: &Verification) -> Table {
+    let mut seen = Vec::new();
+    let closest = v.clearances.iter().filter(|pair| {
+        let first = !seen.contains(&&pair.link);
+        seen.push(&pair.link);
+        first
+    });
+    let distance = |distance| if distance > 0.0 { lower(distance) } else { "none".into() };
+    let row = |pair: &Clearance| {
+        let time = format!("{:.3}", pair.time);
+        vec![pair.link.clone(), pair.obstacle.clone(), distance(pair.distance), time]
+    };
+    Table {
+        title: "the smallest proved distance of each link".into(),
+        ..Table::new(["link of", "obstacle", "distance [m]", "at [s]"], closest.map(row).collect())
+    }
 }
 
 /// Returns the verdict about the worst motion as a sentence, and tables of the motions with the

@@ -61,6 +61,7 @@ fn a_motion_that_touches_is_a_witness() {
         "{}",
         run.stdout
     );
+    assert!(run.stdout.contains("the smallest proved distance of each link"), "{}", run.stdout);
     assert_eq!(lab.names("cell"), ["A.svg", "A_closest.csv", "verify.html"]);
     let json = verify(&lab, "suites = [\"A\"]", &obstacle(IN_THE_WAY), "--json").exits(1).json();
     fits("verify", &json);
