@@ -19,29 +19,6 @@
 //! assert_eq!(mul_up(0.0, 0.1), 0.0);
 //! ```
 
-/// A factor for which x ± |x| · `STEP` rounds to the neighbours of x, for every |x| > [`TINY`].
-///
-/// The product |x| · `STEP` is slightly above half an ulp and at most one ulp. Rump, Zimmermann,
-/// Boldo, Melquiond: Computing predecessor and successor in rounding to nearest, BIT 49 (2009).
-const STEP: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
-
-/// A bound above 2⁻⁹⁶⁹ = 2e-292. Above it, |x| · [`STEP`] is a normal number and stays above half
-/// an ulp.
-const TINY: f64 = 1e-290;
-
-/// Returns whether [`bounds_of_rounded`] is valid for [lo, hi].
-#[inline]
-pub(crate) const fn is_far_from_underflow(lo: f64, hi: f64) -> bool {
-    (lo.abs() > TINY) & (hi.abs() > TINY)
-}
-
-/// Returns the number below `lo` < ∞ and the number above `hi` > -∞, like [`f64::next_down`] and
-/// [`f64::next_up`] but without a branch.
-#[inline]
-pub(crate) const fn bounds_of_rounded(lo: f64, hi: f64) -> (f64, f64) {
-    (lo - lo.abs() * STEP, hi + hi.abs() * STEP)
-}
-
 /// Returns the number above x where `condition`, else x, without the branch of [`f64::next_up`].
 ///
 /// `condition` must be false for x = 0, ∞ and NaN.

@@ -6,10 +6,9 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use num_traits::{One, Zero};
 
 use super::closed::Interval;
-use crate::dispatch::Dispatch;
-use crate::rounding::{
-    add_down, add_up, bounds_of_rounded, div_down, div_up, is_far_from_underflow, mul_down, mul_up,
-};
+use super::ends;
+use crate::dispatch::{Dispatch, Kernel, vectorised};
+use crate::rounding::{div_down, div_up, mul_down, mul_up};
 
 impl Neg for Interval {
     type Output = Interval;
@@ -22,9 +21,9 @@ impl Neg for Interval {
 
 impl Add for Interval {
     type Output = Interval;
-    #[inline]
+    #[inline(always)]
     fn add(self, rhs: Interval) -> Interval {
-        Interval { lo: add_down(self.lo, rhs.lo), hi: add_up(self.hi, rhs.hi) }
+        ends::sum(self, rhs)
     }
 }
 
@@ -36,33 +35,13 @@ impl Sub for Interval {
     }
 }
 
-/// Returns the smaller number; without the NaN handling of `f64::min` it is one instruction.
-#[inline]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// Returns the larger number; without the NaN handling of `f64::max` it is one instruction.
-#[inline]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
 impl Mul for Interval {
     type Output = Interval;
-    #[inline]
+    #[inline(always)]
     fn mul(self, rhs: Interval) -> Interval {
-        let (ll, lh) = (self.lo * rhs.lo, self.lo * rhs.hi);
-        let (hl, hh) = (self.hi * rhs.lo, self.hi * rhs.hi);
-        let lo = smaller(smaller(ll, lh), smaller(hl, hh));
-        let hi = larger(larger(ll, lh), larger(hl, hh));
-        // Each of the four ends is a factor of ll or hh. Where both products are finite, none of
-        // the four products is 0 · ∞.
-        if is_far_from_underflow(lo, hi) && (ll + hh).abs() < f64::INFINITY {
-            let (lo, hi) = bounds_of_rounded(lo, hi);
-            Interval { lo, hi }
-        } else {
-            self.mul_with_zero_or_infinity(rhs)
+        match ends::product(self, rhs) {
+            Some(product) => product,
+            None => self.mul_with_zero_or_infinity(rhs),
         }
     }
 }
@@ -75,6 +54,11 @@ impl Interval {
         let finite = |x: Interval| (x.hi - x.lo) < f64::INFINITY;
         if (zero(self) && finite(rhs)) || (zero(rhs) && finite(self)) {
             return Interval { lo: 0.0, hi: 0.0 };
+        }
+        // Products of such factors are far from underflow and overflow, so that 0 is exact.
+        let is_moderate = |x: f64| x == 0.0 || (1e-140..1e140).contains(&x.abs());
+        if [self.lo, self.hi, rhs.lo, rhs.hi].into_iter().all(is_moderate) {
+            return ends::product_of_moderate(self, rhs);
         }
         let pairs = [(self.lo, rhs.lo), (self.lo, rhs.hi), (self.hi, rhs.lo), (self.hi, rhs.hi)];
         let lo = pairs.iter().fold(f64::INFINITY, |m, &(a, b)| m.min(mul_down(a, b)));
@@ -159,7 +143,13 @@ impl One for Interval {
     }
 }
 
-impl Dispatch for Interval {}
+/// On x86-64, kernels over intervals take AVX2 where the processor has it.
+impl Dispatch for Interval {
+    #[inline(always)]
+    fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+        vectorised(kernel)
+    }
+}
 
 impl Sum for Interval {
     fn sum<I: Iterator<Item = Interval>>(terms: I) -> Interval {

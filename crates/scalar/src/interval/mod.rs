@@ -3,16 +3,18 @@
 //! Each file uses only files named before it in this list:
 //!
 //! 1. `closed`: the type [`Interval`].
-//! 2. `arithmetic`: sums, products, quotients and their operators.
-//! 3. `powers`: powers, roots, absolute value, minimum and maximum.
-//! 4. `power_series`: series with a proved error bound.
-//! 5. `exponential` and `trigonometric`: exp, sin and cos by such series.
-//! 6. `inverse`: logarithm and angle, as corrected guesses.
-//! 7. `decimal`: decimal text.
+//! 2. `ends`: sums and products, both ends at once.
+//! 3. `arithmetic`: sums, products, quotients and their operators.
+//! 4. `powers`: powers, roots, absolute value, minimum and maximum.
+//! 5. `power_series`: series with a proved error bound.
+//! 6. `exponential` and `trigonometric`: exp, sin and cos by such series.
+//! 7. `inverse`: logarithm and angle, as corrected guesses.
+//! 8. `decimal`: decimal text.
 
 mod arithmetic;
 pub(crate) mod closed;
 mod decimal;
+mod ends;
 mod exponential;
 mod inverse;
 mod power_series;

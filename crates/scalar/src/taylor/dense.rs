@@ -219,8 +219,8 @@ const UNROLLED: usize = 4;
 /// Adds p y + q x to `out` at the indices in `row`.
 #[inline(always)]
 fn add_two_rows<C: Scalar>(row: &[u32], [p, q]: [&C; 2], [y, x]: [&[C]; 2], out: &mut [C]) {
-    // Coefficients of several numbers fill vector instructions one by one.
-    if size_of::<C>() > 2 * size_of::<f64>() {
+    // Coefficients of several numbers, such as intervals, fill vector instructions one by one.
+    if size_of::<C>() >= 2 * size_of::<f64>() {
         for ((at, y), x) in row.iter().zip(y).zip(x) {
             out[*at as usize] += p.clone() * y.clone() + q.clone() * x.clone();
         }

@@ -1,0 +1,184 @@
+//! Sums and products of intervals, both ends at once.
+//!
+//! On x86-64 the two ends lie in one register as (-lo, hi), so that both round upwards. Elsewhere
+//! they are computed one by one. Both ways have the same bits.
+
+use super::closed::Interval;
+
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) use one_by_one::{product, sum};
+#[cfg(target_arch = "x86_64")]
+pub(super) use side_by_side::{product, sum};
+
+/// A factor for which x ± |x| · `STEP` rounds to the neighbours of x, for every |x| > [`TINY`].
+///
+/// The product |x| · `STEP` is slightly above half an ulp and at most one ulp. Rump, Zimmermann,
+/// Boldo, Melquiond: Computing predecessor and successor in rounding to nearest, BIT 49 (2009).
+const STEP: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
+
+/// A bound above 2⁻⁹⁶⁹ = 2e-292. Above it, |x| · [`STEP`] is a normal number and stays above half
+/// an ulp.
+const TINY: f64 = 1e-290;
+
+/// Encloses the product of intervals whose ends are 0 or between 1e-140 and 1e140 in size.
+pub(super) fn product_of_moderate(x: Interval, y: Interval) -> Interval {
+    let (lo, hi) = rounded_product(x, y);
+    // -0 + 0 is 0.
+    Interval { lo: lo - lo.abs() * STEP + 0.0, hi: hi + hi.abs() * STEP + 0.0 }
+}
+
+/// Returns the ends of the product, rounded to nearest, of bounded intervals.
+#[inline]
+fn rounded_product(x: Interval, y: Interval) -> (f64, f64) {
+    let (ll, lh) = (x.lo * y.lo, x.lo * y.hi);
+    let (hl, hh) = (x.hi * y.lo, x.hi * y.hi);
+    (smaller(smaller(ll, lh), smaller(hl, hh)), larger(larger(ll, lh), larger(hl, hh)))
+}
+
+/// Returns the smaller number; without the NaN handling of `f64::min` it is one instruction.
+#[inline]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// Returns the larger number; without the NaN handling of `f64::max` it is one instruction.
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod side_by_side {
+    use core::arch::x86_64::__m128d;
+
+    use pulp::core_arch::x86::Sse2;
+
+    use super::{Interval, STEP, TINY};
+
+    /// Returns the instructions; the detection of SSE2, which every x86-64 has, costs nothing.
+    #[inline(always)]
+    fn sse2() -> Sse2 {
+        Sse2::try_new().expect("x86-64 has SSE2")
+    }
+
+    /// Returns (lo, hi).
+    #[inline(always)]
+    fn ends(x: Interval) -> __m128d {
+        sse2()._mm_set_pd(x.hi, x.lo)
+    }
+
+    /// Returns the interval whose ends are (-lo, hi).
+    #[inline(always)]
+    fn interval(outward: __m128d) -> Interval {
+        let v = sse2();
+        let ends = flipped(outward);
+        Interval { lo: v._mm_cvtsd_f64(ends), hi: v._mm_cvtsd_f64(v._mm_unpackhi_pd(ends, ends)) }
+    }
+
+    /// Returns (-x, y) of (x, y).
+    #[inline(always)]
+    fn flipped(x: __m128d) -> __m128d {
+        sse2()._mm_xor_pd(x, sse2()._mm_set_pd(0.0, -0.0))
+    }
+
+    #[inline(always)]
+    fn magnitudes(x: __m128d) -> __m128d {
+        sse2()._mm_andnot_pd(sse2()._mm_set1_pd(-0.0), x)
+    }
+
+    /// Encloses the sum, as `add_down` and `add_up` do.
+    #[inline(always)]
+    pub(in crate::interval) fn sum(x: Interval, y: Interval) -> Interval {
+        let v = sse2();
+        let (x, y) = (flipped(ends(x)), flipped(ends(y)));
+        let s = v._mm_add_pd(x, y);
+        let is_below = v._mm_or_pd(
+            v._mm_cmplt_pd(v._mm_sub_pd(s, x), y),
+            v._mm_cmplt_pd(v._mm_sub_pd(s, y), x),
+        );
+        // The bits of the number above are 1 more for a positive number, 1 less for a negative one.
+        let is_negative = v._mm_castpd_si128(v._mm_cmplt_pd(s, v._mm_set1_pd(0.0)));
+        let step = v._mm_or_si128(is_negative, v._mm_set1_epi64x(1));
+        let step = v._mm_and_si128(step, v._mm_castpd_si128(is_below));
+        interval(v._mm_castsi128_pd(v._mm_add_epi64(v._mm_castpd_si128(s), step)))
+    }
+
+    /// Encloses the product; `None` where an end is zero or infinite, or where it may underflow.
+    #[inline(always)]
+    pub(in crate::interval) fn product(x: Interval, y: Interval) -> Option<Interval> {
+        let v = sse2();
+        let (x, y) = (ends(x), ends(y));
+        let p = v._mm_mul_pd(x, v._mm_unpacklo_pd(y, y));
+        let q = v._mm_mul_pd(x, v._mm_unpackhi_pd(y, y));
+        let low = v._mm_xor_pd(v._mm_min_pd(p, q), v._mm_set1_pd(-0.0));
+        let high = v._mm_max_pd(p, q);
+        let ends = v._mm_max_pd(v._mm_unpacklo_pd(low, high), v._mm_unpackhi_pd(low, high));
+        let sizes = magnitudes(ends);
+        // Where the sums are finite, so are all four products, and none of them is 0 · ∞.
+        let sums = magnitudes(v._mm_add_pd(p, q));
+        let is_valid = v._mm_and_pd(
+            v._mm_cmplt_pd(v._mm_set1_pd(TINY), sizes),
+            v._mm_cmplt_pd(sums, v._mm_set1_pd(f64::INFINITY)),
+        );
+        (v._mm_movemask_pd(is_valid) == 3)
+            .then(|| interval(v._mm_add_pd(ends, v._mm_mul_pd(sizes, v._mm_set1_pd(STEP)))))
+    }
+}
+
+#[cfg(any(test, not(target_arch = "x86_64")))]
+mod one_by_one {
+    use super::{Interval, STEP, TINY, rounded_product};
+    use crate::rounding::{add_down, add_up};
+
+    /// Encloses the sum.
+    #[inline]
+    pub(in crate::interval) fn sum(x: Interval, y: Interval) -> Interval {
+        Interval { lo: add_down(x.lo, y.lo), hi: add_up(x.hi, y.hi) }
+    }
+
+    /// Encloses the product; `None` where an end is zero or infinite, or where it may underflow.
+    #[inline]
+    pub(in crate::interval) fn product(x: Interval, y: Interval) -> Option<Interval> {
+        let (lo, hi) = rounded_product(x, y);
+        // Each of the four ends is a factor of these products. Where both are finite, none of the
+        // four products is 0 · ∞.
+        let (ll, hh) = (x.lo * y.lo, x.hi * y.hi);
+        let is_valid = (lo.abs() > TINY) & (hi.abs() > TINY) & ((ll + hh).abs() < f64::INFINITY);
+        is_valid.then(|| Interval { lo: lo - lo.abs() * STEP, hi: hi + hi.abs() * STEP })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers at which rounding, overflow, underflow or signs change, and a few others.
+    fn numbers() -> Vec<f64> {
+        let sizes = [0.0, 5e-324, 2.3e-308, 1e-290, 1.7e-290, 0.1, 1.0 / 3.0, 1.0, 1.5, 3e9];
+        let large = [1.3e154, 1e300, f64::MAX / 2.0, f64::MAX, f64::INFINITY];
+        let sizes = sizes.iter().chain(&large).flat_map(|x| [*x, x.next_down()]);
+        let mut all: Vec<f64> = sizes.filter(|x| *x >= 0.0).flat_map(|x| [x, -x]).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
+    #[test]
+    fn both_ways_have_the_same_bits() {
+        let numbers = numbers();
+        let pairs = numbers.iter().flat_map(|lo| numbers.iter().map(|hi| Interval::new(*lo, *hi)));
+        let intervals: Vec<Interval> = pairs.flatten().collect();
+        let bits = |x: Interval| [x.lo.to_bits(), x.hi.to_bits()];
+        let mut products = 0;
+        for x in intervals.iter().step_by(7) {
+            for y in &intervals {
+                assert_eq!(bits(sum(*x, *y)), bits(one_by_one::sum(*x, *y)), "{x:?} {y:?}");
+                // One way may leave a product to the general case where the other does not.
+                if let (Some(p), Some(q)) = (product(*x, *y), one_by_one::product(*x, *y)) {
+                    assert_eq!(bits(p), bits(q), "{x:?} {y:?}");
+                    products += 1;
+                }
+            }
+        }
+        assert!(products > 10_000, "{products}");
+    }
+}
