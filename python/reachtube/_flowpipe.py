@@ -48,6 +48,14 @@ class Flowpipe(Values):
     ended
         The time, and the state whose bounds grew the most, where no enclosure could be verified
         further; ``None`` where the flowpipe reached the last sample.
+    method
+        ``"linearisation"`` or ``"taylor"``, chosen or given; ``None`` if older bytes lack it.
+    taylor_order
+        The order of the Taylor models.
+    parts
+        Number of equal parts of each step over which the sets were propagated.
+    pieces
+        Number of pieces of the initial set along each state; empty for one piece.
     """
 
     states: tuple[str, ...]
@@ -57,6 +65,21 @@ class Flowpipe(Values):
     step_lower: Array
     step_upper: Array
     ended: tuple[float, str] | None
+    method: str | None = None
+    taylor_order: int | None = None
+    parts: int = 1
+    pieces: tuple[int, ...] = ()
+
+    @property
+    def choice(self) -> str:
+        """What method, parts of each step and pieces gave the sets, in words."""
+        taylor = f"Taylor models of order {self.taylor_order}"
+        chosen = [taylor if self.method == "taylor" else self.method or "unknown method"]
+        if self.parts > 1:
+            chosen.append(f"{self.parts} parts of each step")
+        cut = zip(self.pieces, self.states, strict=False)
+        chosen += [f"{count} pieces of {name}" for count, name in cut if count > 1]
+        return ", ".join(chosen)
 
     @property
     def is_reached(self) -> bool:
@@ -75,7 +98,7 @@ class Flowpipe(Values):
 
     def __repr__(self) -> str:
         end = "" if self.ended is None else f", ended at {self.ended[0]:g} s"
-        return f"<Flowpipe of {', '.join(self.states)}: {len(self.t)} samples{end}>"
+        return f"<Flowpipe of {', '.join(self.states)}: {len(self.t)} samples{end}; {self.choice}>"
 
 
 def _terms(
@@ -162,7 +185,7 @@ def flowpipe(
     *,
     inputs: Mapping[Any, npt.ArrayLike] | None = None,
     measured: Mapping[Any, npt.ArrayLike] | None = None,
-    method: Literal["linearisation", "taylor"] = "linearisation",
+    method: Literal["linearisation", "taylor"] | None = None,
     taylor_order: int = 4,
     vertex_variables: int | None = None,
     order: int | None = None,
@@ -186,7 +209,8 @@ def flowpipe(
         0 where not given.
     method
         Conservative linearisation of zonotopes, for large inputs, or Taylor models in the initial
-        state, for large initial sets.
+        state, for large initial sets. If neither it nor one of the last three settings is given,
+        method, order, parts of each step and pieces are found by trial; the result names them.
     taylor_order
         The order of the Taylor models.
     vertex_variables
@@ -212,8 +236,8 @@ def flowpipe(
     ...     {x: (1.39, 1.41), y: 2.4},
     ...     np.linspace(0.0, 1.0, 101),
     ... )
-    >>> pipe.is_reached
-    True
+    >>> pipe.is_reached, pipe.choice
+    (True, 'linearisation')
     """
     named, sets = _names(rates), _names(inputs or {})
     angles, terms = _terms(named, list(sets))
@@ -230,7 +254,8 @@ def flowpipe(
         for name in sets
     ]
     rows = np.array(columns, dtype=np.float64).T.reshape(len(times), len(sets))
-    if method not in ("linearisation", "taylor"):
+    automatic = method is None and vertex_variables is None and order is None and not pieces
+    if method not in (None, "linearisation", "taylor"):
         raise SettingError(f"method is {method!r}; give 'linearisation' or 'taylor'")
     parts = _names(pieces or {})
     if unknown := sorted(set(parts) - set(named)):
@@ -241,7 +266,7 @@ def flowpipe(
     vertices = vertex_variables
     if vertices is not None:
         vertices = whole("vertex_variables", vertices, 0, MOST_VERTEX_VARIABLES)
-    samples, steps, ended = _reachtube.flowpipe(
+    samples, steps, ended, (chosen, fine, along_states) = _reachtube.flowpipe(
         len(sets),
         angles,
         terms,
@@ -251,6 +276,7 @@ def flowpipe(
         np.ascontiguousarray(rows),
         input_centre,
         input_radius,
+        automatic,
         whole("taylor_order", taylor_order, 1, MOST_EXPONENT) if method == "taylor" else None,
         vertices,
         None if order is None else whole("order", order, 1),
@@ -265,4 +291,8 @@ def flowpipe(
         frozen(steps[0]),
         frozen(steps[1]),
         None if ended is None else (ended[0], states[ended[1]]),
+        "linearisation" if chosen is None else "taylor",
+        chosen,
+        fine,
+        tuple(along_states),
     )

@@ -290,11 +290,17 @@ def flowpipe(
     measured: _Array,
     input_centre: list[float],
     input_radius: list[float],
+    automatic: bool,
     taylor: int | None,
     vertex_variables: int | None,
     order: int | None,
     pieces: list[int],
-) -> tuple[tuple[_Array, _Array], tuple[_Array, _Array], tuple[float, int] | None]: ...
+) -> tuple[
+    tuple[_Array, _Array],
+    tuple[_Array, _Array],
+    tuple[float, int] | None,
+    tuple[int | None, int, list[int]],
+]: ...
 def read_log(
     paths: list[str],
     topics: list[str],

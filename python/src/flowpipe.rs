@@ -2,8 +2,8 @@
 
 use pyo3::prelude::*;
 use reachtube::reach::{
-    Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, Hyperrectangle, PolynomialSystem,
-    TimeGrid, UncertainInput,
+    AutomaticFlowpipe, Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings, Hyperrectangle,
+    PolynomialSystem, TimeGrid, UncertainInput,
 };
 use reachtube::scalar::{Interval, TaylorPolynomial, TaylorSpace, TaylorTerm};
 
@@ -14,9 +14,12 @@ use crate::watched::watched;
 /// The terms of one component: exponents of (x, u, sines, cosines), and the coefficient.
 type Terms = Vec<(Vec<u8>, f64)>;
 
-/// Bounds at samples (lower, upper; K x N), over steps (lower, upper; K - 1 x N), and where the
-/// flowpipe ended early the time and the state.
-type Found<'py> = (Vec<Output<'py>>, Vec<Output<'py>>, Option<(f64, usize)>);
+/// Bounds at samples (lower, upper; K x N), over steps (lower, upper; K - 1 x N), where the
+/// flowpipe ended early the time and the state, and the choice that gave it.
+type Found<'py> = (Vec<Output<'py>>, Vec<Output<'py>>, Option<(f64, usize)>, Choice);
+
+/// The order of Taylor models, the parts of each step, and the pieces along each state.
+type Choice = (Option<u32>, usize, Vec<usize>);
 
 fn system(
     states: usize,
@@ -41,11 +44,12 @@ fn system(
     PolynomialSystem::trigonometric(states, inputs, angles, &components).map_err(Failure::setting)
 }
 
-/// Computes the flowpipe of ẋ = f(x, u) over the sample times.
+/// Computes the flowpipe of ẋ = f(x, u) over the sample times. Where it is `automatic`, its
+/// settings are found by trial.
 #[pyfunction]
 #[pyo3(signature = (
-    inputs, angles, terms, times, centre, radius, measured, input_centre, input_radius, taylor,
-    vertex_variables, order, pieces
+    inputs, angles, terms, times, centre, radius, measured, input_centre, input_radius, automatic,
+    taylor, vertex_variables, order, pieces
 ))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn flowpipe<'py>(
@@ -59,6 +63,7 @@ pub(crate) fn flowpipe<'py>(
     measured: Input<'py>,
     input_centre: Vec<f64>,
     input_radius: Vec<f64>,
+    automatic: bool,
     taylor: Option<u32>,
     vertex_variables: Option<usize>,
     order: Option<usize>,
@@ -80,9 +85,19 @@ pub(crate) fn flowpipe<'py>(
         let initial = Hyperrectangle { centre: vec![0.0; states], radius };
         let set = Hyperrectangle { centre: input_centre, radius: input_radius };
         let input = UncertainInput { measured: &measured, set: &set };
-        Flowpipe::new(&system, &grid, &centre, &initial, &input, &settings)
-            .map_err(Failure::setting)
+        let found = if automatic {
+            Flowpipe::automatic(&system, &grid, &centre, &initial, &input)
+        } else {
+            Flowpipe::new(&system, &grid, &centre, &initial, &input, &settings)
+                .map(|flowpipe| AutomaticFlowpipe { flowpipe, settings, parts: 1 })
+        };
+        found.map_err(Failure::setting)
     })?;
+    let AutomaticFlowpipe { flowpipe: found, settings, parts } = found;
+    let order = match settings.method {
+        FlowpipeMethod::TaylorModels { order } => Some(order),
+        _ => None,
+    };
     let samples = [found.len(), states];
     let steps = [found.len().saturating_sub(1), states];
     let bounds = |at: &dyn Fn(usize) -> Vec<Interval>, shape: [usize; 2]| {
@@ -99,5 +114,6 @@ pub(crate) fn flowpipe<'py>(
         bounds(&|k| found.sample(k).to_vec(), samples),
         bounds(&|k| found.step(k).to_vec(), steps),
         ended,
+        (order, parts, settings.pieces),
     ))
 }

@@ -114,13 +114,32 @@ def test_taylor_models_and_pieces_are_tighter() -> None:
     start = {x: (1.3, 1.5), y: (2.35, 2.45)}
     widths = {}
     for name, options in {
-        "plain": {},
+        "plain": {"method": "linearisation"},
         "taylor": {"method": "taylor", "taylor_order": 6},
         "pieces": {"pieces": {x: 4, y: 2}},
     }.items():
         found = rt.flowpipe(system, start, t, **options)  # type: ignore[arg-type]
         widths[name] = float((found.upper - found.lower)[-1].sum()) if found.is_reached else np.inf
     assert widths["taylor"] < widths["plain"] and widths["pieces"] < widths["plain"]
+
+
+def test_settings_that_are_not_given_are_found_and_named() -> None:
+    x, y = rt.variables("x y")
+    # Steps of 2 s are too long for linearisation.
+    found = rt.flowpipe({x: -(x**3)}, {x: (0.9, 1.1)}, np.arange(0.0, 11.0, 2.0))
+    assert found.is_reached and found.parts > 1 and "parts of each step" in repr(found)
+    given = rt.flowpipe(
+        {x: -(x**3)}, {x: (0.9, 1.1)}, np.arange(0.0, 11.0, 2.0), method="linearisation"
+    )
+    assert not given.is_reached and given.choice == "linearisation"
+    # A large set is tighter as a Taylor model.
+    system = {x: y, y: (1 - x**2) * y - x}
+    start, t = {x: (1.25, 1.55), y: (2.35, 2.45)}, np.linspace(0.0, 3.0, 301)
+    found = rt.flowpipe(system, start, t)
+    assert found.method == "taylor" and f"order {found.taylor_order}" in repr(found)
+    assert rt.Flowpipe.from_bytes(found.to_bytes()) == found
+    cut = rt.flowpipe(system, start, t, pieces={x: 8, y: 4})
+    assert cut.choice == "linearisation, 8 pieces of x, 4 pieces of y" and cut.pieces == (8, 4)
 
 
 @pytest.mark.parametrize(

@@ -9,16 +9,19 @@ mod lwa4p;
 #[allow(dead_code)]
 mod systems;
 
+use std::time::Instant;
+
 use divan::{Bencher, black_box};
 use reachtube_reach::{
-    Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid,
-    UncertainInput,
+    AutomaticFlowpipe, Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle,
+    PolynomialSystem, TimeGrid, UncertainInput,
 };
 
 const SAMPLES: usize = 1251;
 
 fn main() {
     print_widths();
+    print_choices();
     divan::main();
 }
 
@@ -105,4 +108,64 @@ fn print_widths() {
 fn published(bencher: Bencher, which: usize) {
     let problem = &problems()[which];
     bencher.bench(|| solve(black_box(problem)));
+}
+
+/// A problem without settings: its name, system, initial set, step (s) and number of samples.
+type Open = (&'static str, PolynomialSystem, Hyperrectangle, (f64, usize));
+
+fn open_problems() -> Vec<Open> {
+    let set = |centre: &[f64], radius: &[f64]| Hyperrectangle {
+        centre: centre.to_vec(),
+        radius: radius.to_vec(),
+    };
+    let laub_loomis = |w: f64| {
+        let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[w; 7]);
+        ("Laub-Loomis", systems::laub_loomis(), start, (0.02, 1001))
+    };
+    let production = || set(&[9.75, 0.01, 0.01, 0.09308], &[0.25, 0.0, 0.0, 0.00218]);
+    let coupled = set(&[1.4, 2.4, 1.4, 2.4, 70.0], &[0.15, 0.05, 0.15, 0.05, 10.0]);
+    vec![
+        ("Van der Pol", systems::van_der_pol(), set(&[1.4, 2.4], &[0.15, 0.05]), (0.01, 701)),
+        laub_loomis(0.01),
+        laub_loomis(0.05),
+        laub_loomis(0.1),
+        ("Production-destruction", systems::production_destruction(), production(), (0.05, 2001)),
+        ("Production-destruction", systems::production_destruction(), production(), (1.0, 101)),
+        ("Coupled Van der Pol", systems::coupled_van_der_pol(), coupled, (0.01, 701)),
+    ]
+}
+
+fn find((_, system, start, (step, samples)): &Open) -> AutomaticFlowpipe {
+    let none = Hyperrectangle::zero(0);
+    let input = UncertainInput { measured: &[], set: &none };
+    let zero = vec![0.0; start.dimension()];
+    Flowpipe::automatic(system, &TimeGrid::uniform(*step, *samples), &zero, start, &input)
+        .expect("sizes fit")
+}
+
+fn print_choices() {
+    for problem in open_problems() {
+        let begin = Instant::now();
+        let found = find(&problem);
+        let time = begin.elapsed().as_secs_f64();
+        let (flowpipe, settings) = (&found.flowpipe, &found.settings);
+        let end = flowpipe.sample(flowpipe.len() - 1);
+        let widths: Vec<String> = end.iter().map(|x| format!("{:.4}", x.width())).collect();
+        println!(
+            "{} {:?}: {:?} {:?}, {} parts, {:?} in {time:.2} s, widths {}",
+            problem.0,
+            problem.2.radius,
+            settings.method,
+            settings.pieces,
+            found.parts,
+            flowpipe.outcome(),
+            widths.join(" ")
+        );
+    }
+}
+
+#[divan::bench(args = 0..open_problems().len() - 1)]
+fn automatic(bencher: Bencher, which: usize) {
+    let problem = &open_problems()[which];
+    bencher.bench(|| find(black_box(problem)));
 }

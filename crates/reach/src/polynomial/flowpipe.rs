@@ -279,7 +279,7 @@ fn propagator<'a>(
 }
 
 /// Returns side i of the set of initial states.
-fn side(start: &[f64], initial_set: &Hyperrectangle, i: usize) -> Interval {
+pub(crate) fn side(start: &[f64], initial_set: &Hyperrectangle, i: usize) -> Interval {
     Interval::point(start[i]) + Interval::centred(initial_set.centre[i], initial_set.radius[i])
 }
 

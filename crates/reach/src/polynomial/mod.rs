@@ -8,6 +8,7 @@ pub(crate) mod flowpipe;
 pub(crate) mod linearise;
 pub(crate) mod propagator;
 pub(crate) mod settings;
+pub(crate) mod simulated;
 pub(crate) mod system;
 pub(crate) mod taylor;
 pub(crate) mod uncertain_input;

@@ -73,6 +73,35 @@ fn taylor_models_are_chosen_where_linearisation_fails() {
     assert!(matches!(method, FlowpipeMethod::TaylorModels { .. }), "{method:?}");
 }
 
+/// Linearisation reaches the end 2.5 times as wide as trajectories found by search.
+#[test]
+fn a_wide_flowpipe_does_not_end_the_search() {
+    let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[0.05; 7]);
+    let (grid, none) = (TimeGrid::uniform(0.1, 201), set(&[], &[]));
+    let input = UncertainInput { measured: &[], set: &none };
+    let found = automatic(&systems::laub_loomis(), &grid, &start, &input);
+    let width = found.flowpipe.sample(200)[3].width();
+    assert!(found.flowpipe.is_reached() && width > 0.0125 && width < 1.1 * 0.0126, "{width}");
+}
+
+/// The solution x = x0 / (1 - x0 t) of ẋ = x² from [-9, 1] has a pole at 1 s, so that polynomials
+/// in x0 converge slowly.
+#[test]
+fn a_set_that_is_too_large_is_divided() {
+    let z = variables(1, 2);
+    let system = PolynomialSystem::new(1, 0, &[&z[0] * &z[0]]).unwrap();
+    let (grid, none) = (TimeGrid::uniform(0.01, 91), set(&[], &[]));
+    let input = UncertainInput { measured: &[], set: &none };
+    let found = automatic(&system, &grid, &set(&[-4.0], &[5.0]), &input);
+    assert!(found.flowpipe.is_reached() && found.settings.pieces[0] > 1, "{:?}", found.settings);
+    assert!(found.flowpipe.sample(90)[0].width() < 2.0 * 11.0);
+    for (k, t) in grid.times().iter().enumerate() {
+        let exact = |x: f64| x / (1.0 - x * t);
+        let side = found.flowpipe.sample(k)[0];
+        assert!(side.lo() <= exact(-9.0) && side.hi() >= exact(1.0), "{side:?} at {t} s");
+    }
+}
+
 #[test]
 fn a_pole_is_an_outcome_and_measured_inputs_are_held_over_parts() {
     // ẋ = x² + u from [0.9, 1.1] has a pole before 1.2 s, whatever the settings.
