@@ -93,6 +93,11 @@ pub(crate) fn flowpipe<'py>(
         };
         found.map_err(Failure::setting)
     })?;
+    Ok(converted(py, &found, states))
+}
+
+/// Converts a flowpipe of a system with the given number of states.
+fn converted<'py>(py: Python<'py>, found: &AutomaticFlowpipe, states: usize) -> Found<'py> {
     let AutomaticFlowpipe { flowpipe: found, settings, parts } = found;
     let order = match settings.method {
         FlowpipeMethod::TaylorModels { order } => Some(order),
@@ -110,10 +115,10 @@ pub(crate) fn flowpipe<'py>(
         FlowpipeOutcome::Failed { time, state, .. } => Some((*time, *state)),
         _ => None,
     };
-    Ok((
+    (
         bounds(&|k| found.sample(k).to_vec(), samples),
         bounds(&|k| found.step(k).to_vec(), steps),
         ended,
-        (order, parts, settings.pieces),
-    ))
+        (order, *parts, settings.pieces.clone()),
+    )
 }
