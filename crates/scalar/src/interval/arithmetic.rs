@@ -48,7 +48,7 @@ impl Mul for Interval {
 
 impl Interval {
     /// Encloses the product where an end is zero or infinite, or where a product may underflow.
-    fn mul_with_zero_or_infinity(self, rhs: Interval) -> Interval {
+    pub(super) fn mul_with_zero_or_infinity(self, rhs: Interval) -> Interval {
         // Exact zeros abound in the geometry of robots; 0 · ∞ is left to the general case.
         let zero = |x: Interval| x.lo == 0.0 && x.hi == 0.0;
         let finite = |x: Interval| (x.hi - x.lo) < f64::INFINITY;
