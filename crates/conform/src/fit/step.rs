@@ -17,8 +17,9 @@ use crate::error::Result;
 use crate::fit::evaluation::{FitModel, FitTask, Smallest, StepRow};
 use crate::fit::group::Group;
 use crate::fit::slopes::Slope;
+use crate::program::dot::dot;
 use crate::program::layout::Layout;
-use crate::program::program::{Program, dot};
+use crate::program::program::Program;
 use crate::program::solver::{Triplets, solve_cone};
 
 /// A row counts as violated beyond this part of the largest row.

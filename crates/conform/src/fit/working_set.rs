@@ -11,7 +11,8 @@ use crate::error::Result;
 use crate::fit::evaluation::{FitModel, FitTask, Smallest};
 use crate::fit::group::Group;
 use crate::fit::search::{FoundNumbers, Search, SearchEffort};
-use crate::program::program::{RowIndex, dot};
+use crate::program::dot::dot;
+use crate::program::program::RowIndex;
 
 /// Recordings that are searched with all at once.
 const MOST_AT_ONCE: usize = 16;

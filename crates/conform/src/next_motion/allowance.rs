@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
-use crate::program::program::{Program, dot};
+use crate::program::dot::dot;
+use crate::program::program::Program;
+use crate::program::reached::Reached;
 use crate::sets::UncertaintySets;
 
 /// Rows of recordings that lie beyond the reach of sets, by block, sample and state: by how much,
@@ -15,10 +17,9 @@ impl Program<'_> {
     /// Adds the rows of the program that lie beyond the reach of some sets.
     pub(crate) fn missing(&self, sets: &UncertaintySets, missing: &mut Missing) {
         let unknowns = self.unknowns(sets);
-        for index in self.indices(1) {
-            let excess = self.excess(index, &unknowns);
-            if self.is_missed(index, excess, &unknowns) {
-                let (block, k, i, _) = index;
+        for row in self.all_reached(&unknowns) {
+            if self.is_missed(&row) {
+                let Reached { index: (block, k, i, _), excess, .. } = row;
                 let gains = || (0.0, self.row(block, k, i).1.to_vec());
                 let own = missing.entry((block, k, i)).or_insert_with(gains);
                 own.0 = own.0.max(excess);

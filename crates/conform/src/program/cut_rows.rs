@@ -2,8 +2,9 @@
 
 use crate::data::settings::Noise;
 use crate::program::cut::Cut;
+use crate::program::dot::dot;
 use crate::program::layout::Layout;
-use crate::program::program::{Program, dot};
+use crate::program::program::Program;
 use crate::program::solver::Triplets;
 use crate::sets::UncertaintySets;
 

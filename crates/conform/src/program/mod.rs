@@ -5,6 +5,7 @@ mod cost_of_sets;
 pub(crate) mod costs;
 pub(crate) mod cut;
 mod cut_rows;
+pub(crate) mod dot;
 pub(crate) mod layout;
 mod limits;
 mod of_problem;
@@ -12,6 +13,7 @@ mod other_recordings;
 pub(crate) mod paper;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod program;
+pub(crate) mod reached;
 mod repair;
 pub(crate) mod solver;
 mod units;

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
 use crate::error::Result;
-use crate::program::program::{Program, RowIndex, Solution, TIGHT, Unknowns, dot};
+use crate::program::dot::dot;
+use crate::program::program::{Program, RowIndex, Solution};
+use crate::program::reached::Reached;
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Deviation;
 use crate::tube::rows::NEGLIGIBLE_RADIUS;
@@ -104,29 +106,13 @@ impl Program<'_> {
         self.tight(sets).into_iter().filter(has_width).collect()
     }
 
-    /// Returns the rows among some that are [tight](Self::tight).
-    pub(crate) fn tight_among(
-        &self,
-        rows: impl Iterator<Item = RowIndex>,
-        sets: &UncertaintySets,
-    ) -> Vec<RowIndex> {
-        let unknowns = self.unknowns(sets);
-        let touches = |index: &RowIndex| {
-            let (b, k, i, _) = *index;
-            let radius = dot(self.row(b, k, i).1, &unknowns.radius) + unknowns.free_noise[i];
-            self.excess(*index, &unknowns) >= -TIGHT * radius
-        };
-        rows.filter(|(b, k, ..)| *k < self.blocks[*b].envelope.len()).filter(touches).collect()
-    }
-
     /// Returns the number of rows, both sides together, that do not hold, up to rounding.
     #[must_use]
     pub(crate) fn outside(&self, sets: &UncertaintySets) -> usize {
         let unknowns = self.unknowns(sets);
-        let missed =
-            |index: &RowIndex| self.is_missed(*index, self.excess(*index, &unknowns), &unknowns);
+        let missed = self.all_reached(&unknowns).filter(|row| self.is_missed(row));
         let mut rows: Vec<_> =
-            self.indices(1).filter(missed).map(|(b, k, i, _)| (b, k, i)).collect();
+            missed.map(|Reached { index: (b, k, i, _), .. }| (b, k, i)).collect();
         rows.dedup();
         rows.len()
     }
@@ -168,8 +154,8 @@ impl Program<'_> {
     /// Returns whether a row of recordings without which the sets were found leaves them by more
     /// than the rounding of recorded states. Where each motion starts at its own state, X0 may be
     /// as small as this rounding, and no factor of U encloses a first sample that misses it.
-    pub(crate) fn is_missed(&self, index: RowIndex, excess: f64, unknowns: &Unknowns) -> bool {
-        excess > STATE_ROUNDING && self.is_violated(index, excess, unknowns)
+    pub(crate) fn is_missed(&self, row: &Reached) -> bool {
+        row.excess > STATE_ROUNDING && self.is_violated(row)
     }
 
     /// Returns the factor of some radii with which the rows of some samples hold, up to rounding;
@@ -181,15 +167,13 @@ impl Program<'_> {
         is_asked: impl Fn(usize) -> bool,
     ) -> Option<f64> {
         let unknowns = self.unknowns(sets);
-        let needed = |index: RowIndex| {
-            let excess = self.excess(index, &unknowns);
-            let gains = &self.row(index.0, index.1, index.2).1[part.clone()];
-            let given = dot(gains, &unknowns.radius[part.clone()]);
-            let is_missed = self.is_missed(index, excess, &unknowns);
-            if is_missed { 1.0 + excess / given } else { 1.0 }
+        let needed = |row: Reached| {
+            let (b, k, i, _) = row.index;
+            let gains = &self.row(b, k, i).1[part.clone()];
+            1.0 + row.excess / dot(gains, &unknowns.radius[part.clone()])
         };
-        let rows = self.indices(1).filter(|(_, sample, ..)| is_asked(*sample));
-        let factor = rows.map(needed).fold(1.0, f64::max);
+        let rows = self.all_reached(&unknowns).filter(|row| is_asked(row.index.1));
+        let factor = rows.filter(|row| self.is_missed(row)).map(needed).fold(1.0, f64::max);
         factor.is_finite().then_some(factor)
     }
 }

@@ -1,7 +1,8 @@
 //! The sums of the paper over the reachable set of some sets.
 
 use crate::program::costs::distinct_shares;
-use crate::program::program::{Program, dot};
+use crate::program::dot::dot;
+use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 
 /// Sums over the interval hull of the reachable set in the units of the paper.

@@ -11,8 +11,6 @@
 //! stands, and blocks at one time count by their mean (docs/method.md, corrections A, E and F).
 //! Inside the program w_k is counted in mean steps.
 
-use std::collections::{BTreeMap, HashSet};
-
 use reachtube_reach::Hyperrectangle;
 
 use crate::data::settings::{Noise, Settings};
@@ -22,13 +20,11 @@ use crate::error::{Error, Result};
 use crate::program::block::Block;
 use crate::program::costs::{SampleTimes, cost};
 use crate::program::cut::Cut;
+use crate::program::dot::dot;
 use crate::program::layout::{Layout, Limits};
 use crate::program::solver::{FINE, Triplets, polished, solve_cone};
 use crate::search::optimality::optimality_gap;
 use crate::sets::UncertaintySets;
-
-/// A row counts as violated beyond this part of its own size.
-const TOLERANCE: f64 = 1e-10;
 
 /// A row within this part of the radius of the reachable set is called tight.
 pub(crate) const TIGHT: f64 = 1e-6;
@@ -38,9 +34,6 @@ pub(crate) const CLOSE: f64 = 0.02;
 
 /// What is below this part of the largest deviation is rounding.
 pub(super) const ROUNDING: f64 = 1e-14;
-
-/// Number of windows of the horizon; each adds its worst violated row to the next round.
-const WINDOWS: usize = 24;
 
 /// Rounds of row generation at most.
 const ROUNDS: usize = 200;
@@ -215,60 +208,11 @@ impl<'a> Program<'a> {
         self.indices((longest / 8).max(1)).collect()
     }
 
-    /// The right-hand side of a row: the deviation along its direction, less the known noise.
-    fn bound(&self, (b, k, i, side): RowIndex) -> f64 {
-        let envelope = &self.blocks[b].envelope;
-        let known = match &self.settings.noise {
-            Noise::Fixed(radii) => radii[i],
-            Noise::None | Noise::Fitted => 0.0,
-        };
-        match side {
-            Side::Upper => envelope.upper(k, i) - known,
-            Side::Lower => -envelope.lower(k, i) - known,
-        }
-    }
-
     /// The entries of E_k and of R_k in row i.
     pub(crate) fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
         let width = self.shape.radii();
         let start = k * self.shape.entries() + i * 2 * width;
         self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
-    }
-
-    /// Deviation minus reach of a row, unrounded.
-    pub(crate) fn excess(&self, index: RowIndex, unknowns: &Unknowns) -> f64 {
-        let (b, k, i, side) = index;
-        let (centre, radius) = self.row(b, k, i);
-        let reach = side.sign() * dot(centre, &unknowns.centre) + dot(radius, &unknowns.radius);
-        self.bound(index) - reach - unknowns.free_noise[i]
-    }
-
-    /// The worst violated row of each window, state and side that is not among `known` yet.
-    fn violated(&self, sets: &UncertaintySets, known: &[RowIndex]) -> Vec<RowIndex> {
-        let unknowns = self.unknowns(sets);
-        let known: HashSet<&RowIndex> = known.iter().collect();
-        let mut worst: BTreeMap<(usize, usize, usize, bool), (f64, RowIndex)> = BTreeMap::new();
-        for index in self.indices(1) {
-            let (excess, (b, k, i, side)) = (self.excess(index, &unknowns), index);
-            if !self.is_violated(index, excess, &unknowns) || known.contains(&index) {
-                continue;
-            }
-            let window = k * WINDOWS / self.blocks[b].envelope.len();
-            let key = (b, window, i, side == Side::Upper);
-            let entry = worst.entry(key).or_insert((excess, index));
-            if excess > entry.0 {
-                *entry = (excess, index);
-            }
-        }
-        worst.into_values().map(|(_, index)| index).collect()
-    }
-
-    /// Whether a row with this excess misses more than rounding.
-    pub(crate) fn is_violated(&self, index: RowIndex, excess: f64, unknowns: &Unknowns) -> bool {
-        let (b, k, i, _) = index;
-        let reach = dot(self.row(b, k, i).1, &unknowns.radius);
-        let size = self.bound(index).abs().max(reach);
-        excess > (TOLERANCE * size).max(ROUNDING * self.scale)
     }
 
     pub(crate) fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
@@ -350,18 +294,6 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Returns the rows that touch the hull of the sets' reach, within 1e-6 of its radius.
-    #[must_use]
-    pub(crate) fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
-        self.tight_among(self.indices(1), sets)
-    }
-
-    /// Keeps the rows that come within `part` of the largest |d| of the sets' reach.
-    pub(crate) fn keep_close(&self, rows: &mut Vec<RowIndex>, sets: &UncertaintySets, part: f64) {
-        let unknowns = self.unknowns(sets);
-        rows.retain(|row| self.excess(*row, &unknowns) > -part * self.scale);
-    }
-
     /// Returns the largest |d| among the rows.
     #[must_use]
     pub(crate) fn scale(&self) -> f64 {
@@ -374,8 +306,4 @@ pub(crate) struct Unknowns {
     pub(super) centre: Vec<f64>,
     pub(super) radius: Vec<f64>,
     pub(super) free_noise: Vec<f64>,
-}
-
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

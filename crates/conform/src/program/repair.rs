@@ -1,6 +1,8 @@
 //! The repair of the solver's answer: sets that satisfy every row up to rounding.
 
-use crate::program::program::{Program, ROUNDING, RowIndex, dot};
+use crate::program::dot::dot;
+use crate::program::program::{Program, ROUNDING};
+use crate::program::reached::Reached;
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {
@@ -29,12 +31,11 @@ impl Program<'_> {
         let term =
             |(j, w): (usize, &f64)| if *w > 0.0 && !is_limited(j) { largest / w } else { 0.0 };
         let terms: Vec<f64> = self.cost.iter().enumerate().map(term).collect();
-        let needed = |index: RowIndex| {
-            let gain = dot(self.row(index.0, index.1, index.2).1, &terms);
-            let excess = self.excess(index, &unknowns);
-            if excess > ROUNDING * self.scale { excess / gain } else { 0.0 }
+        let needed = |Reached { index: (b, k, i, _), excess, .. }: Reached| {
+            let gain = || dot(self.row(b, k, i).1, &terms);
+            if excess > ROUNDING * self.scale { excess / gain() } else { 0.0 }
         };
-        let factor = self.indices(1).map(needed).fold(0.0, f64::max);
+        let factor = self.all_reached(&unknowns).map(needed).fold(0.0, f64::max);
         let mut widened = sets.clone();
         let UncertaintySets { initial_set, input_set, .. } = &mut widened;
         let radii = initial_set.radius.iter_mut().chain(&mut input_set.radius);
@@ -47,16 +48,10 @@ impl Program<'_> {
     /// ratio of what a row needs to what the radii give it.
     fn worst_ratio(&self, sets: &UncertaintySets) -> f64 {
         let unknowns = self.unknowns(sets);
-        let ratio = |index: RowIndex| {
-            let (b, k, i, _) = index;
-            let given = dot(self.row(b, k, i).1, &unknowns.radius);
-            if given > ROUNDING * self.scale {
-                1.0 + self.excess(index, &unknowns) / given
-            } else {
-                1.0
-            }
+        let ratio = |Reached { excess, radius, .. }: Reached| {
+            if radius > ROUNDING * self.scale { 1.0 + excess / radius } else { 1.0 }
         };
-        self.indices(1).map(ratio).fold(1.0, f64::max)
+        self.all_reached(&unknowns).map(ratio).fold(1.0, f64::max)
     }
 }
 
