@@ -100,6 +100,15 @@ fn nominal_states(problem: &Problem, case: &Case) -> Result<Vec<f64>> {
     if problem.dynamics().linear_system().is_none() {
         return nominal(problem.dynamics().polynomials(), case);
     }
-    let Nominal { trajectory, .. } = Nominal::new(problem.grids()?, case);
-    Ok((0..trajectory.len()).flat_map(|k| trajectory.state(k).iter().map(|x| x.mid())).collect())
+    if case.run.is_some() {
+        let Nominal { trajectory, .. } = Nominal::new(problem.grids()?, case);
+        let states = (0..trajectory.len()).map(|k| trajectory.state(k));
+        return Ok(states.flat_map(|x| x.iter().map(|x| x.mid())).collect());
+    }
+    // It lies between the recordings and the deviations, which are known.
+    let own = problem.deviations()?.iter().find(|deviation| deviation.suite == case.suite);
+    let deviations = &own.expect("each suite has deviations").envelope;
+    let (measured, states) = (&case.measured, case.measured.dimension());
+    let places = (0..measured.len()).flat_map(|k| (0..states).map(move |i| (k, i)));
+    Ok(places.map(|(k, i)| measured.upper(k, i) - deviations.upper(k, i)).collect())
 }
