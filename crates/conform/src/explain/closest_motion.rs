@@ -7,7 +7,7 @@ use reachtube_scalar::rounding::{add_down, add_up, sub_up};
 
 use crate::data::case::Case;
 use crate::explain::chain::Chain;
-use crate::explain::regulate::regulate;
+use crate::explain::regulate::{Regulated, regulate};
 use crate::explain::steps::{ModelSteps, Step};
 use crate::nominal::simulate::{STEP_NORM, simulate};
 use crate::sets::UncertaintySets;
@@ -97,27 +97,14 @@ impl<'a> ClosestMotion<'a> {
         Self { model, recorded, start, inputs, given: acting, constant, closeness, substeps }
     }
 
-    /// Repeats the linearisation until the model meets its residual.
+    /// Searches for the motion.
     pub(super) fn run(&self) -> Behaviour {
-        let centre: Vec<f64> = self.inputs.iter().map(middle).collect();
-        let (mut best, mut expected) = self.pass(&self.recorded.states, &centre);
-        for _ in 1..PASSES {
-            if !best.largest.is_finite() || best.largest <= SLACK * expected + SAME {
-                break;
-            }
-            let (next, next_expected) = self.pass(&best.states, &best.inputs);
-            if next.largest >= best.largest {
-                break;
-            }
-            (best, expected) = (next, next_expected);
-        }
-        best
+        let found = run_together(std::slice::from_ref(self)).pop();
+        found.expect("each search has an answer")
     }
 
-    /// Returns the motion found with the model linearised along another, and the largest residual
-    /// that it would have if the linearisation were the model.
-    fn pass(&self, states: &[f64], inputs: &[f64]) -> (Behaviour, f64) {
-        let found = regulate(&self.chain(states, inputs), self.closeness.enough);
+    /// Returns the motion at moves that were found with the model linearised along another.
+    fn moved(&self, found: &Regulated) -> Behaviour {
         let place = |([low, high], y): (&[f64; 2], &f64)| {
             (0.5 * (low + high + y * (high - low))).clamp(*low, *high)
         };
@@ -131,13 +118,13 @@ impl<'a> ClosestMotion<'a> {
                 (Some(constant.clone()), inputs.collect())
             }
         };
-        (self.behaviour(&start, inputs, constant), found.largest)
+        self.behaviour(&start, inputs, constant)
     }
 
     /// Returns the distance of the linearised model from the recorded motion in units, as a chain
     /// in the start and inputs, which move through their boxes, [-1, 1] each. A disturbance that is
     /// held for the whole motion moves in the first link, and is a part of the chain's state.
-    fn chain(&self, states: &[f64], inputs: &[f64]) -> Chain {
+    fn chain(&self, states: &[f64], inputs: &[f64]) -> Chain<f64> {
         let (n, units) = (self.recorded.joints, self.closeness.units);
         let radii = self.start.iter().zip(units).map(|(start, unit)| radius(start) / unit);
         let distances =
@@ -165,7 +152,7 @@ impl<'a> ClosestMotion<'a> {
 
     /// Appends the step to sample k, made from the state `before` under the input `held`, as a link
     /// from the recorded state and the middle of the allowed inputs.
-    fn link(&self, k: usize, step: Step, before: &[f64], held: &[f64], chain: &mut Chain) {
+    fn link(&self, k: usize, step: Step, before: &[f64], held: &[f64], chain: &mut Chain<f64>) {
         let (n, units) = (held.len(), self.closeness.units);
         let allowed = &self.inputs[(k - 1) * n..k * n];
         let from = self.recorded.state(k - 1);
@@ -223,6 +210,50 @@ impl<'a> ClosestMotion<'a> {
             largest,
         }
     }
+}
+
+/// Repeats the linearisation of each search until the model meets its residual. Searches with as
+/// many samples have their chains regulated side by side.
+pub(super) fn run_together(searches: &[ClosestMotion]) -> Vec<Behaviour> {
+    let centres = searches.iter().map(|search| search.inputs.iter().map(middle).collect());
+    let centres: Vec<Vec<f64>> = centres.collect();
+    let along = searches.iter().zip(&centres);
+    let mut best =
+        pass(along.map(|(search, centre)| (search, &*search.recorded.states, &**centre)));
+    let mut is_open = vec![true; searches.len()];
+    for _ in 1..PASSES {
+        for ((found, expected), is_open) in best.iter().zip(&mut is_open) {
+            *is_open &= found.largest.is_finite() && found.largest > SLACK * expected + SAME;
+        }
+        let open = || searches.iter().zip(&best).zip(&is_open).filter(|(_, is_open)| **is_open);
+        let next =
+            pass(open().map(|((search, (found, _)), _)| (search, &*found.states, &*found.inputs)));
+        let places = best.iter_mut().zip(&mut is_open).filter(|(_, is_open)| **is_open);
+        for ((best, is_open), next) in places.zip(next) {
+            if next.0.largest < best.0.largest {
+                *best = next;
+            } else {
+                *is_open = false;
+            }
+        }
+    }
+    best.into_iter().map(|(found, _)| found).collect()
+}
+
+/// Returns the motions found with models linearised along other motions, of given states and
+/// inputs, and the largest residual that each would have if the linearisation were the model.
+fn pass<'a, 'm: 'a>(
+    searches: impl Iterator<Item = (&'a ClosestMotion<'m>, &'a [f64], &'a [f64])>,
+) -> Vec<(Behaviour, f64)> {
+    let (searches, chains): (Vec<_>, Vec<_>) =
+        searches.map(|(search, states, inputs)| (search, search.chain(states, inputs))).unzip();
+    let Some(first) = searches.first() else { return Vec::new() };
+    let found = regulate(&chains, first.closeness.enough);
+    searches
+        .iter()
+        .zip(&found)
+        .map(|(search, found)| (search.moved(found), found.largest))
+        .collect()
 }
 
 /// Returns the lowest and highest number of base + set in dimension i, rounded inwards; the nearest

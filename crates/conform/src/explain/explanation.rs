@@ -3,7 +3,8 @@ use rayon::prelude::*;
 use crate::data::case::Case;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
+use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion, run_together};
+use crate::explain::regulate::TOGETHER;
 use crate::sets::UncertaintySets;
 
 /// One unit of position, rad, and of velocity, rad/s, in which the largest residual is minimised.
@@ -51,11 +52,16 @@ pub(crate) fn explain_some(
     let disturbance = problem.settings().disturbance;
     let units = UNITS.map(|unit| vec![unit; n]).concat();
     let closeness = Closeness { units: &units, enough: ENOUGH };
-    let of = |case: &Case, index: usize| {
-        let recorded = problem.run(index)?;
-        let found = ClosestMotion::new(model, case, sets, disturbance, &recorded, closeness).run();
-        let Behaviour { position, velocity, .. } = found;
-        Ok(Explanation { run: index, position, velocity })
+    let of_runs = |case: &Case, indices: &[usize]| {
+        let recorded = indices.iter().map(|index| problem.run(*index));
+        let recorded = recorded.collect::<Result<Vec<_>>>()?;
+        let search = |run| ClosestMotion::new(model, case, sets, disturbance, run, closeness);
+        let searches: Vec<ClosestMotion> = recorded.iter().map(|run| search(&**run)).collect();
+        let explained = indices.iter().zip(run_together(&searches)).map(|(run, found)| {
+            let Behaviour { position, velocity, .. } = found;
+            Explanation { run: *run, position, velocity }
+        });
+        Ok(explained.collect::<Vec<_>>())
     };
     let of_case = |case: &Case| -> Result<Vec<Explanation>> {
         let runs: Vec<usize> = match case.run {
@@ -65,8 +71,9 @@ pub(crate) fn explain_some(
                 runs.iter().map(|run| run.index).collect()
             }
         };
-        let chosen = runs.into_par_iter().filter(|index| is_chosen(*index));
-        chosen.map(|index| of(case, index)).collect()
+        let chosen: Vec<usize> = runs.into_iter().filter(|index| is_chosen(*index)).collect();
+        let together = chosen.par_chunks(TOGETHER).map(|indices| of_runs(case, indices));
+        Ok(together.collect::<Result<Vec<_>>>()?.concat())
     };
     let parts: Vec<Vec<Explanation>> =
         problem.cases()?.par_iter().map(of_case).collect::<Result<_>>()?;

@@ -20,7 +20,7 @@ use crate::data::condition::Condition;
 use crate::data::envelope::Envelope;
 use crate::explain::chain::Chain;
 use crate::explain::closest_motion::{Behaviour, Closeness, ClosestMotion};
-use crate::explain::regulate::regulate;
+use crate::explain::regulate::{Regulated, regulate};
 use crate::program::solver::{FINE, Triplets, solve_cone};
 use crate::sets::UncertaintySets;
 
@@ -235,7 +235,7 @@ fn the_largest_state_is_least() {
             chain.push((0..states).flat_map(row).collect(), drift.iter().copied());
             matrices.push((gain, transition, drift));
         }
-        let found = regulate(&chain, 1e-9);
+        let found = regulate_one(chain);
         assert!(found.moves.iter().all(|y| y.abs() <= 1.0));
         let least = least(&matrices);
         assert!(
@@ -244,6 +244,32 @@ fn the_largest_state_is_least() {
             found.largest
         );
     }
+}
+
+fn regulate_one(chain: Chain<f64>) -> Regulated {
+    regulate(&[chain], 1e-9).pop().unwrap()
+}
+
+/// Chains take different numbers of steps, and the last two are not alike.
+#[test]
+fn chains_side_by_side_have_the_bits_of_each_alone() {
+    let chains = || -> Vec<Chain<f64>> {
+        let mut random = SplitMix64::seed_from_u64(5);
+        let links = [30, 30, 30, 30, 30, 30, 17, 9];
+        let sizes = [0.01, 0.5, 0.3, 0.1, 0.4, 0.6, 0.5, 0.5];
+        let of = |(links, size): (usize, f64)| {
+            let mut chain = Chain::new(3);
+            for k in 0..links {
+                let width = if k == 0 { 3 } else { 2 };
+                let gain = (0..3 * (3 + width)).map(|_| uniform(&mut random, size)).collect();
+                chain.push(gain, (0..3).map(|i| (k + i) as f64 * 0.1 - 1.0));
+            }
+            chain
+        };
+        links.into_iter().zip(sizes).map(of).collect()
+    };
+    let alone: Vec<Regulated> = chains().into_iter().map(regulate_one).collect();
+    assert_eq!(regulate(&chains(), 1e-9), alone);
 }
 
 /// By moves alone: each state is an affine function of them.
@@ -299,7 +325,7 @@ fn a_long_chain_has_the_optimum_of_a_conic_program() {
         matrices.push((gain, transition, drift));
     }
     let start = Instant::now();
-    let found = regulate(&chain, 1e-9).largest;
+    let found = regulate_one(chain).largest;
     let own = start.elapsed();
     let start = Instant::now();
     let least = conic(&matrices);
