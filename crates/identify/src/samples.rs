@@ -296,10 +296,17 @@ impl Samples {
         self.torque.iter().zip(self.predicted(theta)).map(|(tau, y)| tau - y).collect()
     }
 
+    /// Returns the used rows, joint by joint: the torque of a joint does not depend on the links
+    /// before it, and rows that share columns of zeros are faster to factor.
+    pub(crate) fn used_by_joint(&self) -> Vec<usize> {
+        let of_joint = |joint: usize| (joint..self.len()).step_by(self.joints);
+        (0..self.joints).flat_map(of_joint).filter(|r| self.used[*r]).collect()
+    }
+
     /// Returns the triangular factor of the used rows, each multiplied by its entry of `weights`.
     pub(crate) fn weighted_factor(&self, weights: &[f64]) -> TriangularFactor {
-        let used: Vec<usize> =
-            (0..self.len()).filter(|r| self.used[*r] && weights[*r] > 0.0).collect();
+        let mut used = self.used_by_joint();
+        used.retain(|r| weights[*r] > 0.0);
         let p = self.columns.len();
         TriangularFactor::from_written_rows(&used, p, |r, out| {
             out[..p].iter_mut().zip(self.row(r)).for_each(|(o, y)| *o = weights[r] * y);

@@ -34,7 +34,7 @@ pub(super) fn reference_factor(
     let states: Vec<[Vec<f64>; 3]> = (0..STATES).map(|k| state(robot, &sizes, k)).collect();
     let stacked = Regressor::new(robot, columns).stacked(&states);
     let deviations = deviations(joints);
-    let rows: Vec<usize> = (0..stacked.nrows()).collect();
+    let rows: Vec<usize> = (0..n).flat_map(|joint| (joint..stacked.nrows()).step_by(n)).collect();
     TriangularFactor::from_written_rows(&rows, columns.len(), |r, out| {
         out.iter_mut().zip(stacked.row(r).iter()).for_each(|(o, y)| *o = y / deviations[r % n]);
     })

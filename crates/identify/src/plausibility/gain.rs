@@ -80,7 +80,7 @@ impl GainLikelihood {
 
     fn with_reference(samples: &Samples, joints: &[JointFit], reference: usize) -> Self {
         let (n, p) = (samples.joints, samples.columns.len());
-        let used: Vec<usize> = (0..samples.len()).filter(|r| samples.used[*r]).collect();
+        let used = samples.used_by_joint();
         // Outliers must not lower a gain: the root mean square includes them, unlike the robust
         // deviation.
         let weight = |j: usize| {

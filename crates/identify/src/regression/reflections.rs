@@ -34,7 +34,13 @@ impl Kernel for Reflections<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { columns, m, triangle } = self;
+        // A column of zeros stays one.
+        let is_zero = |column: &[f64]| column.iter().all(|x| *x == 0.0);
+        let is_zero: Vec<bool> = columns.chunks_exact(m.max(1)).map(is_zero).collect();
         for j in 0..triangle {
+            if is_zero[j] {
+                continue;
+            }
             let (known, others) = columns.split_at_mut((j + 1) * m);
             let axis = &mut known[j * m + j..];
             let norm = dot(axis, axis).sqrt();
@@ -46,7 +52,8 @@ impl Kernel for Reflections<'_> {
             let reflected = -norm.copysign(axis[0]);
             let half_square = norm * (norm + axis[0].abs());
             axis[0] -= reflected;
-            for column in others.chunks_exact_mut(m) {
+            let others = others.chunks_exact_mut(m).zip(&is_zero[j + 1..]);
+            for (column, _) in others.filter(|(_, is_zero)| !**is_zero) {
                 let column = &mut column[j..];
                 let part = dot(axis, column) / half_square;
                 for (entry, axis) in column.iter_mut().zip(&*axis) {

@@ -3,8 +3,9 @@ use rayon::prelude::*;
 
 use crate::regression::reflections::factor;
 
-/// Number of rows that are factored at once.
-const CHUNK: usize = 1024;
+/// Number of rows that are factored at once. Columns of a power of two of numbers would share a few
+/// places of a cache.
+const CHUNK: usize = 1000;
 
 /// The triangular factor of any number of rows [a, y], which is all that least squares needs.
 ///

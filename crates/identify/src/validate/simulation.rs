@@ -2,7 +2,9 @@ use crate::prepare::log::{PreparedLog, spread};
 use crate::regression::residuals::root_mean_square;
 use nalgebra::DVector;
 use rayon::prelude::*;
-use reachtube_robot::Robot;
+use reachtube_ode::{Ensemble, InitialValueProblem};
+use reachtube_robot::{DrivenBy, Robot, RobotField};
+use reachtube_scalar::Lanes;
 use serde::Serialize;
 use std::borrow::Cow;
 
@@ -11,6 +13,9 @@ const MAX_WINDOWS: usize = 40;
 
 /// Largest number of recordings that are simulated.
 const MOST_LOGS: usize = 64;
+
+/// Number of windows that are simulated side by side.
+const TOGETHER: usize = 8;
 
 /// Longest step of the simulation \[s\].
 const SIMULATION_STEP: f64 = 2e-3;
@@ -63,10 +68,10 @@ fn simulate_windows(robot: &Robot, logs: &[&PreparedLog], duration: f64) -> Wind
             (0..count).map(move |k| (log, k * apart, length))
         })
         .collect();
-    let ends: Vec<Option<DVector<f64>>> = windows
-        .par_iter()
-        .map(|(log, start, length)| window_error(&warmed(robot, log), log, *start, *length))
-        .collect();
+    let of_logs = windows.chunk_by(|a, b| std::ptr::eq(a.0, b.0));
+    let together: Vec<_> = of_logs.flat_map(|windows| windows.chunks(TOGETHER)).collect();
+    let ends = together.par_iter().flat_map_iter(|windows| window_errors(robot, windows));
+    let ends: Vec<Option<DVector<f64>>> = ends.collect();
     let moved = |joint: usize| {
         windows
             .iter()
@@ -104,24 +109,35 @@ fn warmed<'a>(robot: &'a Robot, log: &PreparedLog) -> Cow<'a, Robot> {
     Cow::Owned(warm)
 }
 
-/// Returns the simulated minus the recorded state at the end of a window, 2n entries.
+/// Returns the simulated minus the recorded state at the end of each of some windows of one length
+/// in one log, 2n entries.
 ///
-/// The result is `None` if the simulation diverged.
-fn window_error(
+/// The result is `None` where the simulation diverged.
+fn window_errors(
     robot: &Robot,
-    log: &PreparedLog,
-    start: usize,
-    length: usize,
-) -> Option<DVector<f64>> {
+    windows: &[(&PreparedLog, usize, usize)],
+) -> Vec<Option<DVector<f64>>> {
+    let Some(&(log, _, length)) = windows.first() else { return Vec::new() };
     let substeps = (log.step / SIMULATION_STEP).ceil().max(1.0) as usize;
+    let times: Vec<f64> = (0..=length).map(|k| k as f64 * log.step).collect();
     // The held torque is the mean over the step: the torque at its start would be half a step late.
-    let mean =
-        |k: usize| log.tau(k).iter().zip(log.tau(k + 1)).map(|(a, b)| 0.5 * (a + b)).collect();
-    let torques: Vec<Vec<f64>> = (start..start + length).map(mean).collect();
-    let motion = robot.simulate(log.q(start), log.qd(start), &torques, log.step, substeps);
-    let (q, qd) = (&motion.q[length], &motion.qd[length]);
-    let end = start + length;
-    let errors = q.iter().zip(log.q(end)).chain(qd.iter().zip(log.qd(end))).map(|(a, b)| a - b);
-    let errors = DVector::from_vec(errors.collect::<Vec<f64>>());
-    errors.iter().all(|error| error.is_finite() && error.abs() < DIVERGED).then_some(errors)
+    let mean = |k: usize| log.tau(k).iter().zip(log.tau(k + 1)).map(|(a, b)| 0.5 * (a + b));
+    let held = |(_, start, _): &(_, usize, _)| (*start..start + length).flat_map(mean).collect();
+    let held: Vec<Vec<f64>> = windows.iter().map(held).collect();
+    let state = |k: usize| [log.q(k), log.qd(k)].concat();
+    let starts: Vec<Vec<f64>> = windows.iter().map(|(_, start, _)| state(*start)).collect();
+    let runs = starts.iter().zip(&held);
+    let runs: Vec<_> = runs.map(|(start, inputs)| InitialValueProblem { start, inputs }).collect();
+    let mut errors = vec![None; windows.len()];
+    let robot = warmed(robot, log);
+    let mut field = RobotField::new(&robot, DrivenBy::Motor);
+    let mut ensemble = Ensemble::<Lanes<TOGETHER>>::new(2 * robot.joint_count());
+    ensemble.integrate(&mut field, &times, substeps, &runs, |window, sample, x| {
+        if sample == length {
+            let end = state(windows[window].1 + length);
+            errors[window] = Some(DVector::from_column_slice(x) - DVector::from_vec(end));
+        }
+    });
+    let is_near = |error: &DVector<f64>| error.iter().all(|e| e.is_finite() && e.abs() < DIVERGED);
+    errors.into_iter().map(|error| error.filter(is_near)).collect()
 }
