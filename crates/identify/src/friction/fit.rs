@@ -171,8 +171,8 @@ fn rise(
     let falls_beyond = FallingFriction::speed(viscous, limit)?;
     let size = |x: &DVector<f64>| root_mean_square(residuals(model, samples, x).into_iter());
     let plain = size(x);
-    let condition = rising(model.viscous().map(Some), [0.0; 3], viscous, limit);
     let factor = weighted_factor(model, samples, weights);
+    let condition = rising(model.viscous().map(Some), [0.0; 3], viscous, limit, &factor);
     *x = nearest(&factor, plain.max(f64::MIN_POSITIVE), &[condition]);
     let residuals = [plain, size(x)];
     Some(FallingFriction { joint: name.into(), viscous, falls_beyond, limit, residuals })

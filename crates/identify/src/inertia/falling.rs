@@ -2,6 +2,7 @@
 
 use crate::bodies::RisingFriction;
 use crate::friction::falling::{FallingFriction, rising};
+use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::DVector;
 use reachtube_robot::{Parameter, ParameterKind, Robot};
 
@@ -11,6 +12,8 @@ pub(super) struct ViscousColumns<'a> {
     pub columns: &'a [Parameter],
     /// Speed up to which the friction of each joint must rise \[rad/s\].
     pub limits: &'a [f64],
+    /// The rows of the fit.
+    pub data: &'a TriangularFactor,
 }
 
 impl ViscousColumns<'_> {
@@ -25,8 +28,8 @@ impl ViscousColumns<'_> {
         let viscous = &self.known.joints()[joint].friction.viscous;
         let known = [viscous.v1, viscous.v2, viscous.v3];
         let columns = self.of_joint(joint);
-        let own = rising(columns, known, known, self.limits[joint]).viscous(x.as_slice());
-        rising(columns, known, own, self.limits[joint])
+        let condition = |own| rising(columns, known, own, self.limits[joint], self.data);
+        condition(condition(known).viscous(x.as_slice()))
     }
 
     /// Returns the joints whose fitted friction falls with speed before its limit, with the speed.

@@ -91,7 +91,8 @@ pub(crate) fn fit_inertia(
     // Behind the gears, wrists have almost no inertia, and least squares often a negative one.
     let has_bodies = model.physical.unwrap_or(has_bodies || !model.motor_inertia);
     let limits = sampling.velocity_limits(robot);
-    let viscous = ViscousColumns { known, columns: &columns, limits: &limits };
+    let data = &fit.whitened;
+    let viscous = ViscousColumns { known, columns: &columns, limits: &limits, data };
     let physical =
         has_bodies.then(|| nearest_bodies(robot, &viscous, &fit, &moving, model)).transpose()?;
     let (values, physical, falling, impossible) = match physical {
