@@ -3,6 +3,8 @@
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+use tempfile::{Builder, NamedTempFile};
+
 use crate::error::{Error, Result};
 
 /// Writes a file through a temporary one beside it, which takes the file's name only when all its
@@ -46,7 +48,7 @@ pub fn atomically(
 }
 
 /// Checks, before a long job, that a file can be written at `path` when it is done. No file
-/// remains.
+/// remains, and what a killed program left in its folder goes as in [`remove_left_over`].
 ///
 /// # Errors
 ///
@@ -61,10 +63,39 @@ pub fn try_at(path: &Path) -> Result<()> {
             return Ok(());
         }
         let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        remove_left_over(folder_of(&path));
         let nearest = folder_of(&path).ancestors().find(|folder| folder.exists());
         temporary_in(nearest.unwrap_or(Path::new("."))).map(drop)
     };
     attempt().map_err(|source| Error::Write { path: path.to_path_buf(), source })
+}
+
+/// Removes temporary files of this library from a folder. They remain where a program was killed;
+/// a program that still runs has locked its own, and keeps them.
+pub fn remove_left_over(folder: &Path) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let files = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_file()));
+    for path in files.map(|entry| entry.path()).filter(|path| is_temporary(path)) {
+        // A file that stays is only in the way.
+        let Ok(file) = std::fs::File::open(&path) else { continue };
+        if file.try_lock().is_ok() {
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+/// What the names of temporary files begin with, before some letters and digits.
+const PREFIX: &str = ".reachtube-";
+
+/// What the names of temporary files end with.
+const SUFFIX: &str = ".tmp";
+
+fn is_temporary(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let middle = name.strip_prefix(PREFIX).and_then(|rest| rest.strip_suffix(SUFFIX));
+    middle.is_some_and(|random| {
+        random.len() == 6 && random.bytes().all(|b| b.is_ascii_alphanumeric())
+    })
 }
 
 /// Returns whether `path` is a device or a pipe, which is written to directly.
@@ -76,19 +107,22 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-#[cfg(unix)]
-fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
-    use std::os::unix::fs::PermissionsExt;
-    // The umask decides who may read the file, as for any new file.
-    tempfile::Builder::new()
-        .permissions(std::fs::Permissions::from_mode(0o666))
-        .tempfile_in(folder)
-        .map_err(unnamed)
-}
-
-#[cfg(not(unix))]
-fn temporary_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
-    tempfile::NamedTempFile::new_in(folder).map_err(unnamed)
+/// Makes a temporary file in a folder, and locks it.
+fn temporary_in(folder: &Path) -> std::io::Result<NamedTempFile> {
+    loop {
+        let mut builder = Builder::new();
+        builder.prefix(PREFIX).suffix(SUFFIX);
+        // The umask decides who may read the file, as for any new file.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        let file = builder.tempfile_in(folder).map_err(unnamed)?;
+        // Where a file system has no locks, nothing that is left over is removed.
+        let _ = file.as_file().lock();
+        // Another program may have removed it before it was locked.
+        if file.path().exists() {
+            return Ok(file);
+        }
+    }
 }
 
 /// Returns the error without the name of the temporary file, which users do not know.
@@ -109,6 +143,26 @@ mod tests {
         let file = folder.path().join("file");
         std::fs::write(&file, "").unwrap();
         assert!(try_at(&file.join("model.json")).is_err());
+    }
+
+    #[test]
+    fn what_a_killed_program_left_goes_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let kept = [".reachtube-notes.tmp", ".reachtube-AbC12.tmp", ".tmpAbC123", "a.tmp"];
+        kept.iter().for_each(|name| std::fs::write(path(name), "mine").unwrap());
+        std::fs::create_dir(path(".reachtube-folder.tmp")).unwrap();
+        let left = path(".reachtube-AbC123.tmp");
+        std::fs::write(&left, "half of the ol").unwrap();
+        atomically(&path("model.json"), |out| {
+            // A job that begins while this one writes.
+            try_at(&path("page.html")).unwrap();
+            out.write_all(b"whole")
+        })
+        .unwrap();
+        assert!(!left.exists());
+        assert_eq!(std::fs::read(path("model.json")).unwrap(), b"whole");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), kept.len() + 2);
     }
 
     #[cfg(unix)]

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 /// Number of defects of one file that are listed in full; the rest are counted.
 const LISTED_PER_FILE: usize = 20;
 
+/// Number of gaps of one file whose lines are listed.
+const LISTED_GAPS: usize = 3;
+
 /// What kind of defect a recording has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum DefectKind {
@@ -127,11 +130,12 @@ impl fmt::Display for Defect {
     }
 }
 
-/// Returns the defects in the order found, one per line. The list of a file with very many ends
-/// with a count of the rest.
+/// Returns the defects in the order found, one per line; the gaps of a file share a line, which
+/// is its first. The list of a file with very many defects ends with a count of the rest.
 pub(crate) fn list_defects(defects: &[Defect]) -> String {
     let mut lines = Vec::new();
     for group in defects.chunk_by(|a, b| a.file == b.file) {
+        let group = folded_gaps(group);
         lines.extend(group.iter().take(LISTED_PER_FILE).map(Defect::to_string));
         if group.len() > LISTED_PER_FILE {
             let more = group.len() - LISTED_PER_FILE;
@@ -142,4 +146,55 @@ pub(crate) fn list_defects(defects: &[Defect]) -> String {
         }
     }
     lines.join("\n")
+}
+
+/// Returns the defects of one file, with one for all gaps: the first, with the number of gaps, the
+/// longest, and the first lines.
+fn folded_gaps(defects: &[Defect]) -> Vec<Defect> {
+    let length = |defect: &Defect| match defect.kind {
+        DefectKind::Gap(length) => Some(length),
+        _ => None,
+    };
+    let gaps: Vec<&Defect> = defects.iter().filter(|defect| length(defect).is_some()).collect();
+    let [first, _, ..] = gaps[..] else { return defects.to_vec() };
+    let longest = gaps.iter().filter_map(|gap| length(gap)).max().unwrap_or_default();
+    let lines: Vec<String> = gaps.iter().filter_map(|gap| Some(gap.line?.to_string())).collect();
+    let mut problem = format!(
+        "{} ({} gaps, the longest of {:.6} s",
+        first.problem,
+        gaps.len(),
+        longest.as_secs_f64()
+    );
+    if !lines.is_empty() {
+        let more = if lines.len() > LISTED_GAPS { ", .." } else { "" };
+        let listed = &lines[..LISTED_GAPS.min(lines.len())];
+        problem += &format!(": lines {}{more}", listed.join(", "));
+    }
+    let folded = Defect { problem: problem + ")", ..first.clone() };
+    let others = defects.iter().filter(|defect| length(defect).is_none()).cloned();
+    std::iter::once(folded).chain(others).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Defect, DefectKind, list_defects};
+
+    #[test]
+    fn the_gaps_of_a_file_are_one_line() {
+        let gap = |file: &str, line, length: f64| {
+            let problem = format!("there is a gap of {length} s");
+            Defect::new(file, line, problem, "cut").of_kind(DefectKind::gap(length))
+        };
+        let value = Defect::new("a.csv", Some(3), "q1 is x", "mend").of_kind(DefectKind::Value);
+        let of_a = [(4, 0.02), (7, 0.25), (9, 0.1), (12, 0.03)];
+        let mut all: Vec<Defect> =
+            of_a.map(|(line, length)| gap("a.csv", Some(line), length)).to_vec();
+        all.insert(1, value);
+        all.extend([gap("b.csv", Some(2), 0.1), gap("c", None, 0.1), gap("c", None, 0.2)]);
+        let expected = "a.csv:4: there is a gap of 0.02 s (4 gaps, the longest of 0.250000 s: \
+                        lines 4, 7, 9, ..); cut\na.csv:3: q1 is x; mend\nb.csv:2: there is a \
+                        gap of 0.1 s; cut\nc: there is a gap of 0.1 s (2 gaps, the longest of \
+                        0.200000 s); cut";
+        assert_eq!(list_defects(&all), expected);
+    }
 }

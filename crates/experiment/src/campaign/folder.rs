@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use reachtube_files::hex;
-use reachtube_files::write::atomically;
+use reachtube_files::write::{atomically, remove_left_over};
 use reachtube_robot::Robot;
 use serde_json::json;
 use sha2::{Digest, Sha256};
@@ -39,17 +39,16 @@ impl<'a> Folder<'a> {
         options: &CampaignOptions,
     ) -> Result<Self> {
         let mark = mark(robot.nominal(), options);
-        let path = root.join(MARK);
+        let (folder, path) = (Self { root }, root.join(MARK));
+        folder.remove_left_over();
         if path.exists() {
             let found = reachtube_files::read(&path, REMEDY)?;
             if found != mark.as_bytes() {
                 return Err(CampaignError::OtherCampaign { folder: root.into() }.into());
             }
-        } else if entries(root).iter().any(|path| !is_left_over(path)) {
+        } else if !entries(root).is_empty() {
             return Err(CampaignError::ForeignFolder { folder: root.into() }.into());
         }
-        let folder = Self { root };
-        folder.remove_left_over();
         folder.write_new(MARK, &mark)?;
         folder.write_new("README.md", &readme(robot, options))?;
         folder.write_new("truth.toml", &robot.truth().description().to_toml())?;
@@ -88,12 +87,7 @@ impl<'a> Folder<'a> {
             let deeper = entries(&folder).into_iter().filter(|path| path.is_dir());
             deeper.chain([folder]).collect::<Vec<_>>()
         });
-        for folder in below.chain([self.root.to_path_buf()]) {
-            for path in entries(&folder).iter().filter(|path| is_left_over(path)) {
-                // A file that stays is only in the way.
-                let _ = std::fs::remove_file(path);
-            }
-        }
+        below.chain([self.root.to_path_buf()]).for_each(|folder| remove_left_over(&folder));
     }
 }
 
@@ -134,13 +128,4 @@ fn mark(robot: &Robot, options: &CampaignOptions) -> String {
 fn entries(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten();
     entries.flatten().map(|entry| entry.path()).collect()
-}
-
-/// Returns whether this is the name of a temporary file.
-fn is_left_over(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    path.is_file()
-        && name.strip_prefix(".tmp").is_some_and(|rest| {
-            rest.len() == 6 && rest.bytes().all(|byte| byte.is_ascii_alphanumeric())
-        })
 }

@@ -116,14 +116,14 @@ fn a_stopped_campaign_goes_on_to_the_same_bytes() {
     for file in after_run(&whole).iter().filter(|file| !file.ends_with("M2a_01.csv")) {
         std::fs::remove_file(folder.path().join(file)).unwrap();
     }
-    std::fs::write(folder.path().join("suites/M2a/.tmpAbC123"), "0.1,0.").unwrap();
-    std::fs::write(folder.path().join(".tmpAbC124"), "").unwrap();
+    std::fs::write(folder.path().join("suites/M2a/.reachtube-AbC123.tmp"), "0.1,0.").unwrap();
+    std::fs::write(folder.path().join(".reachtube-AbC124.tmp"), "").unwrap();
     let again = run(&options, folder.path()).unwrap();
     assert_eq!(again.kept, again.recordings - 3);
     assert_eq!(files(folder.path()), whole);
     // A stop before the mark was written.
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join(".tmp00zzZZ"), "{").unwrap();
+    std::fs::write(folder.path().join(".reachtube-00zzZZ.tmp"), "{").unwrap();
     run(&options, folder.path()).unwrap();
     assert_eq!(files(folder.path()), whole);
 }
