@@ -12,8 +12,9 @@ use crate::data::setup::Setup;
 use crate::data::shape::Shape;
 use crate::data::side::Side;
 use crate::error::{Error, Result};
-use crate::fit::data::Data;
+use crate::fit::data::{Data, Track};
 use crate::fit::parameters::Parameters;
+use crate::nominal::loads::LoadsNear;
 use crate::nominal::motion::Corrected;
 use crate::nominal::steps::LinearSteps;
 use crate::program::block::Block;
@@ -46,6 +47,12 @@ pub(crate) struct FitModel {
     pub motions: Vec<Vec<f64>>,
 }
 
+/// The model of one choice of the parameters, discretised over each grid.
+pub(crate) struct NominalModel {
+    pub setup: Setup,
+    steps: Vec<LinearSteps>,
+}
+
 /// The smallest sets of one choice of the parameters.
 #[derive(Clone)]
 pub(crate) struct Smallest {
@@ -74,49 +81,65 @@ impl FitTask<'_> {
         tracks: &[usize],
         known: Option<&FitModel>,
     ) -> Result<FitModel> {
+        let nominal = self.nominal(numbers)?;
+        let coefficients = match known {
+            Some(model) => model.coefficients.clone(),
+            None => self.coefficients(&nominal),
+        };
+        let of = |&t: &usize| Ok((t, self.motion(&nominal, t, None)?));
+        let found: Vec<(usize, Vec<f64>)> = tracks.par_iter().map(of).collect::<Result<_>>()?;
+        let mut motions = vec![Vec::new(); self.data.tracks.len()];
+        for (t, motion) in found {
+            motions[t] = self.rows_of(&motion);
+        }
+        Ok(FitModel { coefficients, motions })
+    }
+
+    /// Returns the model with these numbers, ready to move.
+    ///
+    /// # Errors
+    ///
+    /// As [`model`](Self::model).
+    pub(crate) fn nominal(&self, numbers: &[f64]) -> Result<NominalModel> {
         let setup = self.parameters.apply(numbers)?;
         let system = setup.dynamics.linear_system().ok_or(Error::NotLinear)?;
         let grids = self.data.grids.iter();
-        let steps: Vec<LinearSteps> =
-            grids.map(|grid| LinearSteps::new(system, grid.times())).collect();
-        let coefficients = match known {
-            Some(model) => model.coefficients.clone(),
-            None => self.coefficients(&steps),
-        };
-        Ok(FitModel { coefficients, motions: self.motions(&setup, &steps, tracks)? })
+        let steps = grids.map(|grid| LinearSteps::new(system, grid.times())).collect();
+        Ok(NominalModel { setup, steps })
     }
 
-    fn coefficients(&self, steps: &[LinearSteps]) -> Vec<Arc<Vec<f64>>> {
+    /// Returns the entries of E_k and R_k of each grid, as [`FitModel`] has them.
+    pub(crate) fn coefficients(&self, nominal: &NominalModel) -> Vec<Arc<Vec<f64>>> {
         let constant = self.settings.disturbance == Disturbance::Constant;
         let of = |(steps, grid): (&LinearSteps, &Arc<TimeGrid>)| {
             Arc::new(steps.coefficients(grid.len(), self.stride, constant))
         };
-        steps.iter().zip(&self.data.grids).map(of).collect()
+        nominal.steps.iter().zip(&self.data.grids).map(of).collect()
     }
 
-    fn motions(
+    /// Returns the nominal motion of a track at every sample, samples x 2n; `loads` are the loads
+    /// of gravity near it, if they are known.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::RunsAway`].
+    pub(crate) fn motion(
         &self,
-        setup: &Setup,
-        steps: &[LinearSteps],
-        tracks: &[usize],
-    ) -> Result<Vec<Vec<f64>>> {
+        NominalModel { setup, steps }: &NominalModel,
+        track: usize,
+        loads: Option<&LoadsNear>,
+    ) -> Result<Vec<f64>> {
         let none = InputCorrection::none(self.joints());
         let correction = setup.correction.as_ref().unwrap_or(&none);
-        let (robot, dynamics) = (&setup.robot, &setup.dynamics);
-        let corrected = Corrected { robot, dynamics, correction, settings: self.settings };
-        let width = 2 * self.joints();
-        let of = |&t: &usize| {
-            let track = &self.data.tracks[t];
-            let states = corrected.motion(&track.case, Some(&steps[track.grid]))?.states;
-            let rows = states.chunks_exact(width).step_by(self.stride);
-            Ok((t, rows.flatten().copied().collect()))
-        };
-        let found: Vec<(usize, Vec<f64>)> = tracks.par_iter().map(of).collect::<Result<_>>()?;
-        let mut motions = vec![Vec::new(); self.data.tracks.len()];
-        for (t, motion) in found {
-            motions[t] = motion;
-        }
-        Ok(motions)
+        let (robot, dynamics, settings) = (&setup.robot, &setup.dynamics, self.settings);
+        let Track { case, grid, .. } = &self.data.tracks[track];
+        let corrected = Corrected { robot, dynamics, correction, settings, loads };
+        Ok(corrected.motion(case, Some(&steps[*grid]))?.states)
+    }
+
+    /// Returns a motion at the samples that are rows.
+    pub(crate) fn rows_of(&self, motion: &[f64]) -> Vec<f64> {
+        motion.chunks_exact(2 * self.joints()).step_by(self.stride).flatten().copied().collect()
     }
 
     /// Returns the program of `model` for the tracks named. Its cost is over the samples of all

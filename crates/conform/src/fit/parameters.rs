@@ -214,6 +214,14 @@ impl<'a> Parameters<'a> {
         }
     }
 
+    /// Returns whether the correction of a nominal motion may need the loads of gravity.
+    pub(crate) fn needs_loads(&self) -> bool {
+        let is_dry = |own: &FreeParameter| {
+            matches!(own.quantity, Quantity::Coulomb(_) | Quantity::WarmUpCoulomb)
+        };
+        self.list.iter().any(is_dry) || !self.setup.robot.warms_by().is_empty()
+    }
+
     /// Returns the identified and the fitted value of parameter `p`, and what multiplies the
     /// identified value where that is how it changes.
     pub(crate) fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {

@@ -5,8 +5,10 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::fit::evaluation::{FitModel, FitTask, Smallest};
+use crate::fit::evaluation::{FitModel, FitTask, NominalModel, Smallest};
 use crate::fit::group::Group;
+use crate::nominal::loads::LoadsNear;
+use crate::sets::UncertaintySets;
 
 /// The step of a difference, in the numbers of the parameters.
 const DIFFERENCE: f64 = 1e-4;
@@ -32,36 +34,73 @@ pub(crate) fn slopes(
     model: &FitModel,
     smallest: &Smallest,
 ) -> Result<Vec<Slope>> {
-    let n = fit.joints();
-    let set = |pick: fn(&reachtube_reach::Hyperrectangle) -> &Vec<f64>| -> Vec<f64> {
-        let sets = &smallest.sets;
-        pick(&sets.initial_set).iter().chain(pick(&sets.input_set)).copied().collect()
+    let of_parameter = |p: usize| -> Result<Option<Moved>> {
+        let is_held = held.contains(&fit.parameters.list[p].quantity.group());
+        (!is_held).then(|| Moved::new(fit, numbers, p, (model, smallest))).transpose()
     };
-    let (centre, radius) = (set(|s| &s.centre), set(|s| &s.radius));
-    let of = |p: usize| {
-        if held.contains(&fit.parameters.list[p].quantity.group()) {
-            return Ok(Slope { motions: Vec::new(), reach: None });
+    let count = fit.parameters.len();
+    let moved = (0..count).into_par_iter().map(of_parameter).collect::<Result<Vec<_>>>()?;
+    let here = fit.nominal(numbers)?;
+    let has_loads = fit.parameters.needs_loads();
+    // All parameters share the loads of gravity along a track, to first order.
+    let of_track = |&t: &usize| -> Result<Vec<Vec<f64>>> {
+        let along = |motion: Vec<f64>| LoadsNear::along(&here.setup.robot, &motion);
+        let loads = has_loads.then(|| fit.motion(&here, t, None).map(along)).transpose()?;
+        let difference = |Moved { nominal, step, .. }: &Moved| {
+            let rows = fit.rows_of(&fit.motion(nominal, t, loads.as_ref())?).into_iter();
+            Ok(rows.zip(&model.motions[t]).map(|(x, y)| (x - y) / step).collect())
+        };
+        moved.iter().flatten().map(difference).collect()
+    };
+    let mut of_tracks: Vec<Vec<Vec<f64>>> =
+        tracks.par_iter().map(of_track).collect::<Result<_>>()?;
+    let mut free = 0;
+    let slope = |moved: Option<Moved>| {
+        let mut motions = vec![Vec::new(); fit.data.tracks.len()];
+        let Some(Moved { reach, .. }) = moved else { return Slope { motions, reach: None } };
+        for (&t, own) in tracks.iter().zip(&mut of_tracks) {
+            motions[t] = std::mem::take(&mut own[free]);
         }
+        free += 1;
+        Slope { motions, reach }
+    };
+    Ok(moved.into_iter().map(slope).collect())
+}
+
+/// A model with one number moved.
+struct Moved {
+    nominal: NominalModel,
+    /// How far the number was moved.
+    step: f64,
+    /// As [`Slope`] has it.
+    reach: Option<Vec<Vec<[f64; 2]>>>,
+}
+
+impl Moved {
+    /// Moves number `p` of the model `model`, whose smallest sets are `smallest`.
+    fn new(
+        fit: &FitTask,
+        numbers: &[f64],
+        p: usize,
+        (model, smallest): (&FitModel, &Smallest),
+    ) -> Result<Self> {
         let mut moved = numbers.to_vec();
         let up = numbers[p] + DIFFERENCE <= fit.parameters.list[p].bounds[1];
         let step = if up { DIFFERENCE } else { -DIFFERENCE };
         moved[p] += step;
-        let changes = fit.parameters.changes_model(p);
-        let other = fit.model(&moved, tracks, (!changes).then_some(model))?;
-        let pairs = other.motions.iter().zip(&model.motions);
-        let difference = |(other, here): (&Vec<f64>, &Vec<f64>)| {
-            other.iter().zip(here).map(|(x, y)| (x - y) / step).collect()
-        };
-        let motions = pairs.map(difference).collect();
+        let nominal = fit.nominal(&moved)?;
+        let UncertaintySets { initial_set, input_set, .. } = &smallest.sets;
+        let centre = [&*initial_set.centre, &input_set.centre].concat();
+        let radius = [&*initial_set.radius, &input_set.radius].concat();
+        let width = 2 * centre.len();
         let rows = |(other, here): (&Arc<Vec<f64>>, &Arc<Vec<f64>>)| {
-            let rows = other.chunks_exact(6 * n).zip(here.chunks_exact(6 * n));
+            let rows = other.chunks_exact(width).zip(here.chunks_exact(width));
             rows.map(|(other, here)| reach_slope(other, here, &centre, &radius, step)).collect()
         };
-        let reach = changes
-            .then(|| other.coefficients.iter().zip(model.coefficients.iter()).map(rows).collect());
-        Ok(Slope { motions, reach })
-    };
-    (0..fit.parameters.len()).into_par_iter().map(of).collect()
+        let changed = fit.parameters.changes_model(p).then(|| fit.coefficients(&nominal));
+        let reach = changed.map(|other| other.iter().zip(&model.coefficients).map(rows).collect());
+        Ok(Self { nominal, step, reach })
+    }
 }
 
 fn reach_slope(other: &[f64], here: &[f64], c: &[f64], r: &[f64], step: f64) -> [f64; 2] {

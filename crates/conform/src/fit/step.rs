@@ -9,6 +9,7 @@
 //! and cost w r' + (∂w r) p plus the pull, within the trust region.
 
 use std::collections::{BTreeMap, HashSet};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -73,6 +74,18 @@ pub(crate) struct StepProgram<'a> {
     pub pull: f64,
 }
 
+/// What rows reach at some unknowns, the numbers of the parameters included.
+struct Reach {
+    /// How far each nominal motion moves at the samples that are rows, samples x 2n; empty for
+    /// other tracks.
+    motions: Vec<Vec<f64>>,
+    /// For each grid samples x 2n pairs: what the centres give to the upper side and take from the
+    /// lower one, and what the radii give to both.
+    grids: Vec<Vec<[f64; 2]>>,
+    /// Radii of V that are unknown, 2n.
+    noise: Vec<f64>,
+}
+
 /// Where a step leads.
 pub(crate) struct StepSolution {
     pub numbers: Vec<f64>,
@@ -91,19 +104,21 @@ impl StepProgram<'_> {
         if rows.is_empty() {
             rows.extend(self.first_rows());
         }
-        let mut found = self.solve_rows(rows)?;
+        let (mut unknowns, mut cost) = self.solve_rows(rows)?;
+        let mut reach = self.reach_of(&unknowns);
         for _ in 0..ROUNDS {
-            let added = self.violated(&found.0, rows);
+            let added = self.violated(&reach, rows);
             if added.is_empty() {
                 break;
             }
             rows.extend(added);
-            found = self.solve_rows(rows)?;
+            (unknowns, cost) = self.solve_rows(rows)?;
+            reach = self.reach_of(&unknowns);
         }
-        let (unknowns, cost) = found;
-        let numbers = self.numbers_of(&unknowns);
-        self.keep_tight(&unknowns, rows);
-        Ok(StepSolution { numbers, cost })
+        // The rows that nearly decide the answer are kept for the next step.
+        let limit = -CLOSE * self.program.scale();
+        rows.retain(|row| self.excess(&reach, *row) > limit);
+        Ok(StepSolution { numbers: self.numbers_of(&unknowns), cost })
     }
 
     fn layout(&self) -> Layout {
@@ -278,25 +293,56 @@ impl StepProgram<'_> {
         }
     }
 
-    /// Deviation minus reach of a row after the parameters changed by `moved`.
-    fn excess(&self, row: StepRow, layout: &Layout, unknowns: &[f64], moved: &[f64]) -> f64 {
-        let (t, k, i, side) = row;
-        let (centre, radius) = self.reach(t, k, i);
+    /// What the rows of all tracks reach at `unknowns`.
+    fn reach_of(&self, unknowns: &[f64]) -> Reach {
+        let (layout, moved) = (self.layout(), self.moved(unknowns));
         let (n, centres) = (self.fit.joints(), layout.centres());
-        let mut reach = dot(radius, &unknowns[centres..centres + 3 * n]);
-        reach += side.sign() * dot(centre, &unknowns[..centres]);
-        if layout.cost.len() > centres + 3 * n {
-            reach += unknowns[centres + 3 * n + i];
-        }
         // Derivatives of numbers that are held are not known, and not needed.
-        let moved = moved.iter().enumerate().filter(|(_, x)| **x != 0.0);
-        let change: f64 = moved.map(|(p, x)| self.slope(p, row) * x).sum();
-        self.fit.deviation(self.model, row) - change - reach
+        let moved: Vec<(&Slope, f64)> =
+            self.slopes.iter().zip(moved).filter(|(_, x)| *x != 0.0).collect();
+        let mut motions = vec![Vec::new(); self.model.motions.len()];
+        let of_track = |&t: &usize| {
+            let mut change = vec![0.0; self.model.motions[t].len()];
+            for (slope, x) in &moved {
+                change.iter_mut().zip(&slope.motions[t]).for_each(|(sum, slope)| *sum += slope * x);
+            }
+            (t, change)
+        };
+        let changes: Vec<(usize, Vec<f64>)> = self.tracks.par_iter().map(of_track).collect();
+        changes.into_iter().for_each(|(t, change)| motions[t] = change);
+        let (centre, radius) = unknowns.split_at(centres);
+        let of_grid = |(g, rows): (usize, &Arc<Vec<f64>>)| {
+            let own = rows.chunks_exact(6 * n).map(|row| {
+                let (of_centre, of_radius) = row.split_at(3 * n);
+                [dot(&of_centre[..centres], centre), dot(of_radius, &radius[..3 * n])]
+            });
+            let mut sums: Vec<[f64; 2]> = own.collect();
+            for (slope, x) in &moved {
+                let changed = slope.reach.iter().flat_map(|reach| &reach[g]);
+                for (sum, slope) in sums.iter_mut().zip(changed) {
+                    *sum = [sum[0] + slope[0] * x, sum[1] + slope[1] * x];
+                }
+            }
+            sums
+        };
+        let grids = self.model.coefficients.iter().enumerate().map(of_grid).collect();
+        let noise = unknowns.get(centres + 3 * n..).unwrap_or_default();
+        let has_noise = layout.cost.len() > centres + 3 * n;
+        let noise = if has_noise { noise[..2 * n].to_vec() } else { vec![0.0; 2 * n] };
+        Reach { motions, grids, noise }
+    }
+
+    /// Deviation minus reach of a row.
+    fn excess(&self, reach: &Reach, row: StepRow) -> f64 {
+        let (t, k, i, side) = row;
+        let at = k * 2 * self.fit.joints() + i;
+        let [centre, radius] = reach.grids[self.fit.data.tracks[t].grid][at];
+        let reached = side.sign() * (reach.motions[t][at] + centre) + radius + reach.noise[i];
+        self.fit.deviation(self.model, row) - reached
     }
 
     /// The worst violated row of each grid, window, state and side that is not among `known`.
-    fn violated(&self, unknowns: &[f64], known: &[StepRow]) -> Vec<StepRow> {
-        let (layout, moved) = (self.layout(), self.moved(unknowns));
+    fn violated(&self, reach: &Reach, known: &[StepRow]) -> Vec<StepRow> {
         let known: HashSet<StepRow> = known.iter().copied().collect();
         let states = self.fit.settings.states.rows(2 * self.fit.joints());
         let limit = TOLERANCE * self.program.scale();
@@ -315,7 +361,7 @@ impl StepProgram<'_> {
                 for i in 0..states {
                     for side in Side::BOTH {
                         let row = (t, k, i, side);
-                        let excess = self.excess(row, &layout, unknowns, &moved);
+                        let excess = self.excess(reach, row);
                         if excess > limit && !known.contains(&row) {
                             let key = (grid, k * windows / samples, i, side == Side::Upper);
                             take(&mut worst, key, excess, row);
@@ -331,12 +377,5 @@ impl StepProgram<'_> {
             take(&mut all, key, excess, row);
         }
         all.into_values().map(|(_, row)| row).collect()
-    }
-
-    /// Keeps the rows that nearly decide the answer, for the next step.
-    fn keep_tight(&self, unknowns: &[f64], rows: &mut Vec<StepRow>) {
-        let (layout, moved) = (self.layout(), self.moved(unknowns));
-        let limit = -CLOSE * self.program.scale();
-        rows.retain(|row| self.excess(*row, &layout, unknowns, &moved) > limit);
     }
 }

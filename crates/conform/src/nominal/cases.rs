@@ -159,7 +159,8 @@ impl Problem {
             None if !self.setup().is_recorded_input() => &none,
             None => return Ok((case, None)),
         };
-        let model = Corrected { robot, dynamics, correction, settings: self.settings() };
+        let settings = self.settings();
+        let model = Corrected { robot, dynamics, correction, settings, loads: None };
         let steps =
             dynamics.linear_system().map(|system| LinearSteps::new(system, case.grid.times()));
         let (motion, runaway) = model.motion_until(&case, steps.as_ref())?;

@@ -9,6 +9,7 @@ use crate::data::condition::Condition;
 use crate::data::correction::{InputCorrection, JointCorrection};
 use crate::data::settings::Settings;
 use crate::error::Result;
+use crate::nominal::loads::LoadsNear;
 
 /// Evaluates a correction for one robot.
 #[derive(Debug, Clone)]
@@ -98,6 +99,18 @@ impl<'a> Corrector<'a> {
 
     /// Takes the correction at the state (q, q̇) off the input `u` (n, N m).
     pub(crate) fn take_off(&mut self, q: &[f64], qd: &[f64], u: &mut [f64]) {
+        self.take_off_near(None, q, qd, u);
+    }
+
+    /// Takes the correction off as [`take_off`](Self::take_off) does; with the loads of gravity
+    /// near a sample of a motion, if they are given.
+    pub(crate) fn take_off_near(
+        &mut self,
+        near: Option<(&LoadsNear, usize)>,
+        q: &[f64],
+        qd: &[f64],
+        u: &mut [f64],
+    ) {
         let joints = self.correction.joints.iter().enumerate();
         for (j, joint) in joints {
             let offset = qd[j] - self.origin[j];
@@ -115,11 +128,19 @@ impl<'a> Corrector<'a> {
         if !self.has_coulomb && !changes_coulomb && self.unit_payload.is_none() {
             return;
         }
-        for (j, joint) in self.robot.joints().iter().enumerate() {
-            (self.sin[j], self.cos[j]) = joint.kind.sin_cos(&q[j]);
+        if near.is_none() || self.unit_payload.is_some() {
+            for (j, joint) in self.robot.joints().iter().enumerate() {
+                (self.sin[j], self.cos[j]) = joint.kind.sin_cos(&q[j]);
+            }
         }
         if self.has_coulomb || changes_coulomb {
-            self.robot.gravity(&self.sin, &self.cos, &mut self.workspace, &mut self.torque);
+            match near {
+                Some((loads, sample)) => loads.at(sample, q, &mut self.torque),
+                None => {
+                    let (sin, cos) = (&self.sin, &self.cos);
+                    self.robot.gravity(sin, cos, &mut self.workspace, &mut self.torque);
+                }
+            }
             let joints = self.robot.joints().iter().zip(&self.coulomb);
             for (j, (joint, parts)) in joints.enumerate() {
                 let (load, qd) = (self.torque[j], qd[j]);

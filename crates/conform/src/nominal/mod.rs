@@ -3,6 +3,7 @@
 mod cases;
 pub(crate) mod corrector;
 pub(crate) mod input_error;
+pub(crate) mod loads;
 pub(crate) mod motion;
 pub(crate) mod robot_equations;
 pub(crate) mod simulate;

@@ -10,6 +10,7 @@ use crate::data::runaway::Runaway;
 use crate::data::settings::{Equations, Settings};
 use crate::error::{Error, Result};
 use crate::nominal::corrector::Corrector;
+use crate::nominal::loads::LoadsNear;
 use crate::nominal::robot_equations::RobotEquations;
 use crate::nominal::simulate::{BOUND, runs_away, substeps};
 use crate::nominal::steps::LinearSteps;
@@ -33,6 +34,9 @@ pub(crate) struct Corrected<'a> {
     pub correction: &'a InputCorrection,
     /// The settings.
     pub settings: &'a Settings,
+    /// The loads of gravity near a motion of the same case that this one is close to; `None` to
+    /// compute them.
+    pub loads: Option<&'a LoadsNear>,
 }
 
 impl Corrected<'_> {
@@ -69,9 +73,10 @@ impl Corrected<'_> {
                 Some(RobotEquations::new(self.robot, model)?)
             }
         };
-        let correct = |x: &[f64], u: &mut [f64]| {
+        let correct = |k: usize, x: &[f64], u: &mut [f64]| {
             let (q, qd) = x.split_at(u.len());
-            corrector.take_off(q, &qd[..u.len()], u);
+            let near = self.loads.map(|loads| (loads, k));
+            corrector.take_off_near(near, q, &qd[..u.len()], u);
             if let Some(equations) = &mut equations {
                 equations.replace(x, u);
             }
@@ -86,7 +91,7 @@ impl Corrected<'_> {
 fn linear(
     case: &Case,
     steps: &LinearSteps,
-    mut correct: impl FnMut(&[f64], &mut [f64]),
+    mut correct: impl FnMut(usize, &[f64], &mut [f64]),
 ) -> (NominalMotion, Option<Runaway>) {
     let (n, samples) = (case.joints(), case.grid.len());
     let mut inputs = case.inputs.to_vec();
@@ -95,7 +100,7 @@ fn linear(
     for k in 0..samples.saturating_sub(1) {
         let (before, after) = states.split_at_mut((k + 1) * 2 * n);
         let (x, u) = (&before[k * 2 * n..], &mut inputs[k * n..(k + 1) * n]);
-        correct(x, u);
+        correct(k, x, u);
         steps.advance(k, x, u, &mut after[..2 * n]);
         if !after[..2 * n].iter().all(|x| x.abs() < BOUND) {
             let sizes = after[..2 * n].iter().map(|x| x.abs()).enumerate();
@@ -113,7 +118,7 @@ fn linear(
 fn polynomial(
     model: &PolynomialModel,
     case: &Case,
-    mut correct: impl FnMut(&[f64], &mut [f64]),
+    mut correct: impl FnMut(usize, &[f64], &mut [f64]),
 ) -> Result<NominalMotion> {
     let (n, times) = (case.joints(), case.grid.times());
     let substeps = substeps(&mut Linearisation::new(model), case, &case.start);
@@ -123,7 +128,7 @@ fn polynomial(
     let (mut inputs, mut states) = (case.inputs.to_vec(), case.start.clone());
     for k in 0..times.len().saturating_sub(1) {
         let u = &mut inputs[k * n..(k + 1) * n];
-        correct(&x[..2 * n], u);
+        correct(k, &x[..2 * n], u);
         let (run, mut next) = ([InitialValueProblem { start: &x, inputs: u }], x.clone());
         let outcomes =
             ensemble.integrate(&mut field, &times[k..k + 2], substeps, &run, |_, _, x| {
