@@ -10,7 +10,7 @@ use reachtube_scalar::Interval;
 
 use crate::arm::arm;
 use crate::lwa4p;
-use crate::simulated_case::{Case, contain_ten_thousand, map, set, with_zonotopes};
+use crate::simulated_case::{Case, contain_a_thousand, map, set, with_zonotopes};
 use crate::systems::{self, Polynomial, cubic_arm, laub_loomis, linear, van_der_pol, variables};
 
 #[test]
@@ -150,7 +150,7 @@ fn van_der_pol_is_enclosed() {
     let start = set(&[1.4, 2.4], &[0.15, 0.05]);
     let f = systems::van_der_pol_components();
     let flowpipe =
-        contain_ten_thousand(&van_der_pol(), &f, start, (0.01, 701), &in_pieces(vec![6, 3]));
+        contain_a_thousand(&van_der_pol(), &f, start, (0.01, 701), &in_pieces(vec![6, 3]));
     let [x, y] = flowpipe.sample(700) else { unreachable!() };
     assert!(x.width() < 0.13 && y.width() < 0.55, "{x:?} {y:?}");
 }
@@ -161,7 +161,7 @@ fn laub_loomis_stays_below_the_published_bounds() {
         let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[w; 7]);
         let f = systems::laub_loomis_components();
         let pieces = in_pieces(vec![1, 1, pieces, pieces, 1, 1, 1]);
-        let flowpipe = contain_ten_thousand(&laub_loomis(), &f, start, (0.02, 1001), &pieces);
+        let flowpipe = contain_a_thousand(&laub_loomis(), &f, start, (0.02, 1001), &pieces);
         let highest = (0..1000).map(|k| flowpipe.step(k)[3].hi()).fold(f64::MIN, f64::max);
         assert!(highest < bound, "W = {w}: x4 up to {highest}");
     }

@@ -7,8 +7,18 @@ use reachtube_reach::FlowpipeMethod::Linearisation;
 use crate::simulated_case::{Field, SLACK, random_case};
 
 #[test]
+fn none_of_200_000_behaviours_of_random_systems_leaves_its_sets() {
+    behaviours_of_random_systems_stay_inside(1_000);
+}
+
+#[test]
+#[ignore = "takes long: a million behaviours"]
 fn none_of_a_million_behaviours_of_random_systems_leaves_its_sets() {
-    let runs = 5_000;
+    behaviours_of_random_systems_stay_inside(5_000);
+}
+
+/// Simulates `runs` behaviours of each of 200 systems.
+fn behaviours_of_random_systems_stay_inside(runs: usize) {
     let used: Vec<f64> = (1..=200_u64)
         .into_par_iter()
         .map(|seed| random_case(seed, Linearisation).simulate(runs, seed))

@@ -2,7 +2,6 @@
 
 use std::sync::Mutex;
 
-use rayon::prelude::*;
 use reachtube_ode::{Ensemble, InitialValueProblem, VectorField};
 use reachtube_reach::{
     Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid,
@@ -186,9 +185,9 @@ pub(crate) fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
     }
 }
 
-/// Computes the flowpipe of a published problem and checks that it contains 10,000 simulated
+/// Computes the flowpipe of a published problem and checks that it contains a thousand simulated
 /// trajectories.
-pub(crate) fn contain_ten_thousand(
+pub(crate) fn contain_a_thousand(
     system: &PolynomialSystem,
     f: &[Polynomial],
     start: Hyperrectangle,
@@ -203,7 +202,7 @@ pub(crate) fn contain_ten_thousand(
     assert!(flowpipe.is_reached(), "{:?}", flowpipe.outcome());
     let map = map(start.dimension(), f);
     let case = Case { map, angles: 0, flowpipe, start, input: none, step, parts: 1, substeps: 1 };
-    (0..10_u64).into_par_iter().for_each(|seed| assert!(case.simulate(1000, seed + 1) > 0.02));
+    assert!(case.simulate(1000, 1) > 0.02);
     case.flowpipe
 }
 

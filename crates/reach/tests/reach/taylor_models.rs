@@ -8,7 +8,7 @@ use reachtube_reach::{
 use reachtube_scalar::Interval;
 
 use crate::arm::arm;
-use crate::simulated_case::{contain_ten_thousand, random_case, set, with_zonotopes};
+use crate::simulated_case::{contain_a_thousand, random_case, set, with_zonotopes};
 use crate::systems::{self, coupled_van_der_pol, laub_loomis, linear, van_der_pol, variables};
 
 fn of_order(order: u32) -> FlowpipeSettings {
@@ -48,7 +48,7 @@ fn behaviours_of_random_systems_stay_inside() {
 fn van_der_pol_is_enclosed_tightly() {
     let start = set(&[1.4, 2.4], &[0.15, 0.05]);
     let f = systems::van_der_pol_components();
-    let flowpipe = contain_ten_thousand(&van_der_pol(), &f, start, (0.01, 701), &of_order(8));
+    let flowpipe = contain_a_thousand(&van_der_pol(), &f, start, (0.01, 701), &of_order(8));
     let [x, y] = flowpipe.sample(700) else { unreachable!() };
     assert!(x.lo() <= 1.8005 && x.hi() >= 1.9035 && x.width() < 0.110, "{x:?}");
     assert!(y.lo() <= 0.8485 && y.hi() >= 1.2835 && y.width() < 0.440, "{y:?}");
@@ -60,8 +60,7 @@ fn laub_loomis_is_enclosed_tightly() {
     for (w, order, bound, inner) in [(0.05, 4, 4.5, 0.0125), (0.1, 4, 5.0, 0.0254)] {
         let start = set(&[1.2, 1.05, 1.5, 2.4, 1.0, 0.1, 0.45], &[w; 7]);
         let f = systems::laub_loomis_components();
-        let flowpipe =
-            contain_ten_thousand(&laub_loomis(), &f, start, (0.05, 401), &of_order(order));
+        let flowpipe = contain_a_thousand(&laub_loomis(), &f, start, (0.05, 401), &of_order(order));
         let width = flowpipe.sample(400)[3].width();
         assert!(width > inner && width < 1.06 * inner, "W = {w}: x4 is {width} wide");
         let highest = (0..400).map(|k| flowpipe.step(k)[3].hi()).fold(f64::MIN, f64::max);
@@ -206,7 +205,7 @@ fn sets_of_width_zero_in_some_states_are_propagated() {
     let f = systems::production_destruction_components();
     for settings in [FlowpipeSettings::default(), of_order(3)] {
         let system = systems::production_destruction();
-        let flowpipe = contain_ten_thousand(&system, &f, start.clone(), (0.05, 201), &settings);
+        let flowpipe = contain_a_thousand(&system, &f, start.clone(), (0.05, 201), &settings);
         assert!(
             flowpipe.sample(200).iter().all(|side| side.width() < 1.0),
             "{:?}",

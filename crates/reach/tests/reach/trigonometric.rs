@@ -36,7 +36,7 @@ fn a_pendulum_that_turns_over_is_enclosed() {
         parts: 1,
         substeps: 1,
     };
-    assert!(case.simulate(10_000, 3) > 0.5);
+    assert!(case.simulate(2_000, 3) > 0.5);
 }
 
 /// Sine and cosine as further states describe the same system.
