@@ -26,7 +26,7 @@ impl Speed {
 
     /// Returns `slow` or `fast`.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Slow => "slow",
             Self::Fast => "fast",

@@ -189,7 +189,7 @@ impl Table2Options {
 impl Table2Case {
     /// Returns the bounds of X0 in q and q̇ and of U for a joint, from 0.
     #[must_use]
-    pub fn bounds(&self, joint: usize) -> [(f64, f64); 3] {
+    pub(crate) fn bounds(&self, joint: usize) -> [(f64, f64); 3] {
         let bounds = |set: &Hyperrectangle, i: usize| set.bounds(i);
         let UncertaintySets { initial_set, input_set, .. } = &self.sets;
         let n = input_set.dimension();
@@ -198,7 +198,7 @@ impl Table2Case {
 
     /// Returns the case's name in the paper.
     #[must_use]
-    pub fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         match self.states {
             States::All => "velocity conformant",
             States::Positions => "position conformant",

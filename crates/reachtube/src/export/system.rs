@@ -55,7 +55,7 @@ pub struct Factor {
 impl System {
     /// Takes the model of `dynamics`, which counts as affine wherever its polynomials are.
     #[must_use]
-    pub fn new(dynamics: &Dynamics) -> Self {
+    pub(crate) fn new(dynamics: &Dynamics) -> Self {
         let model = dynamics.polynomials();
         let (n, kinds) = (model.joints(), model.joint_kinds().to_vec());
         let linear = dynamics.linear_system().cloned().or_else(|| model.linear_system().ok());
@@ -87,7 +87,7 @@ impl System {
 
     /// Returns the highest degree of a term in states and inputs together.
     #[must_use]
-    pub fn degree(&self) -> u32 {
+    pub(crate) fn degree(&self) -> u32 {
         let of = |term: &Term| term.factors.iter().map(|factor| u32::from(factor.power)).sum();
         self.rates.iter().flat_map(|rate| &rate.terms).map(of).max().unwrap_or(0)
     }
