@@ -183,9 +183,10 @@ impl From<reachtube::pipeline::Error> for Failure {
             Error::Robot(error) => (*error).into(),
             Error::Abstraction(error) => (*error).into(),
             Error::Verify(error) => (*error).into(),
-            Error::Settings { .. } | Error::HeldOut { .. } | Error::NothingLeft => {
-                Self::Setting(error.to_string())
-            }
+            Error::Settings { .. }
+            | Error::Choice { .. }
+            | Error::HeldOut { .. }
+            | Error::NothingLeft => Self::Setting(error.to_string()),
             error => Self::Other(error.to_string()),
         }
     }

@@ -41,7 +41,7 @@ pub(crate) const TORQUES: Choices = &[
 // Options that name a model and the recordings to compare it with.
 #[derive(Debug, Args)]
 pub(crate) struct ModelArguments {
-    /// Model file that `conform --out` wrote
+    /// Model file that `model` or `conform` wrote
     #[arg(long, value_name = "FILE")]
     pub model: PathBuf,
     #[command(flatten)]

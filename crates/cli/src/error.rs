@@ -191,7 +191,7 @@ pub(crate) enum Error {
     },
     /// `export` has no model for a tool.
     #[error(
-        "only mjcf and urdf take --robot; name a model that `conform --out` wrote with --model"
+        "only mjcf and urdf take --robot; name a model that `model` or `conform` wrote with --model"
     )]
     NoModel,
     /// `export --update` for a tool whose files are written whole.
@@ -243,6 +243,7 @@ impl Error {
             Self::Refused { .. } | Self::Sample { .. } => "recordings",
             Self::Pipeline(error) => match **error {
                 PipelineError::NoSets { .. } => "conform",
+                PipelineError::Choice { .. } => "setting",
                 _ => "recordings",
             },
             Self::Log(error) => log_kind(error),

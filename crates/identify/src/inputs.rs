@@ -90,7 +90,7 @@ impl Inputs {
                 Ok((log.len(), log.thinned(stride, margin), change))
             };
             let done = group.par_iter().map(prepared).collect::<Vec<Result<_>>>();
-            let (done, few) = without_short(done)?;
+            let (done, few) = without_short(done, logs.len() >= 2)?;
             short += few;
             samples += done.iter().map(|(count, ..)| count).sum::<usize>();
             changes.extend(done.iter().map(|(.., change)| *change));
@@ -150,11 +150,12 @@ fn turns<'a>(
 ///
 /// # Errors
 ///
-/// The first error, if there is another one or all recordings are too short.
-fn without_short<T>(done: Vec<Result<T>>) -> Result<(Vec<T>, usize)> {
+/// The first error, if there is another one or all recordings of a group that `is_needed` are too
+/// short.
+fn without_short<T>(done: Vec<Result<T>>, is_needed: bool) -> Result<(Vec<T>, usize)> {
     let all = done.len();
     let is_short = |done: &Result<T>| matches!(done, Err(Error::TooShort { .. }));
-    if done.iter().all(is_short) {
+    if is_needed && done.iter().all(is_short) {
         return Ok((done.into_iter().collect::<Result<_>>()?, 0));
     }
     let kept = done.into_iter().filter(|done| !is_short(done)).collect::<Result<Vec<T>>>()?;
@@ -183,9 +184,11 @@ fn thinning(dynamic: &[PreparedLog], stride: usize, sampling: &Sampling) -> Opti
 /// Describes in a sentence how many recordings were left out, if some were.
 fn too_short(count: usize, cut_off: f64) -> Option<String> {
     (count > 0).then(|| {
-        format!(
-            "{count} recordings were left out: they are too short for a low-pass of {cut_off:.2} Hz"
-        )
+        let (left, they) = match count {
+            1 => ("recording was", "it is"),
+            _ => ("recordings were", "they are"),
+        };
+        format!("{count} {left} left out: {they} too short for a low-pass of {cut_off:.2} Hz")
     })
 }
 

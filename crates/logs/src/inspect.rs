@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use reachtube_recordings::{
     Defect, Inspection, LogSettings, LoggedOptions, MemoryRuns, ReadOptions, Run, RunEntry,
-    RunSource, Understood, inspect_source, is_recording, read_csv, read_logged,
+    RunSource, Understood, check_limits, inspect_source, is_recording, read_csv, read_logged,
 };
 use serde::Serialize;
 
@@ -155,6 +155,17 @@ fn entry(path: &Path, line: u64, content: &Content) -> RunEntry {
     }
 }
 
+impl LoggedRuns<'_> {
+    /// Returns the run unless its numbers cannot be in the units of the robot, if one is named.
+    fn checked(&self, file: &Path, run: Run) -> Result<Run, Vec<Defect>> {
+        let robot = self.options.robot.filter(|robot| robot.joint_count() == run.joints);
+        match robot.map(|robot| check_limits(file, &run, robot)) {
+            Some(defects) if !defects.is_empty() => Err(defects),
+            _ => Ok(run),
+        }
+    }
+}
+
 impl RunSource for LoggedRuns<'_> {
     fn index_name(&self) -> PathBuf {
         self.path.clone()
@@ -175,9 +186,12 @@ impl RunSource for LoggedRuns<'_> {
             Content::Container(_, Err(defects)) => return Err(defects.clone()),
         };
         if let [file] = &files[..]
-            && is_recording(file)
+            && is_recording(file, self.options.columns)
         {
-            return read_csv(file, options);
+            let run = self.checked(file, read_csv(file, options)?)?;
+            if !(0..run.joints).any(|joint| run.jumps_by_turns(joint)) {
+                return Ok(run);
+            }
         }
         let options =
             LoggedOptions { gap_limit: options.gap_limit, until: options.until, ..self.options };
@@ -185,7 +199,7 @@ impl RunSource for LoggedRuns<'_> {
         if let Ok(mut found) = self.found.lock() {
             found[index] = Some((logged.understood, logged.notes));
         }
-        Ok(logged.run)
+        self.checked(&files[0], logged.run)
     }
 }
 

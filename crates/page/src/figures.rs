@@ -8,7 +8,7 @@ use super::page::Page;
 use super::suite_figure::{RunTrace, SuiteFigure, View};
 use super::text::Text;
 use maud::{Markup, PreEscaped, html};
-use reachtube_scalar::number::significant;
+use reachtube_scalar::number::{counted, significant};
 
 /// Title of the section.
 pub(super) const FIGURES: &str = "Recordings in the set";
@@ -184,9 +184,9 @@ fn caption(suite: &SuiteFigure, view: View) -> String {
         more => format!(" The larger red rings mark {more} samples outside the set."),
     };
     format!(
-        "{what} of {} runs (lines) in the reachable set (grey), from {} to {} s. Between samples \
+        "{what} of {} (lines) in the reachable set (grey), from {} to {} s. Between samples \
          the edges of the set are joined by straight lines.{rings}{outside}",
-        suite.runs.len(),
+        counted(suite.runs.len(), "run"),
         significant(suite.times[0], 5),
         significant(suite.times[suite.times.len() - 1], 5),
     )

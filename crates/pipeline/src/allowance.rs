@@ -111,10 +111,11 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     let outside: usize = left_out().filter_map(|left| left.outside).sum();
     let part = outside as f64 / rows.max(1) as f64;
     let growth = left_out().map(|left| left.gauge.unwrap_or(f64::INFINITY)).fold(1.0, f64::max);
-    let [leave, grow] = [
-        format!("{:.1} % of the rows leave the sets of the others", 100.0 * part),
-        format!("one needs {growth:.1} times these sets"),
-    ];
+    let leave = format!("{:.1} % of the rows leave the sets of the others", 100.0 * part);
+    let grow = match growth.is_finite() {
+        true => format!("one needs {growth:.1} times these sets"),
+        false => "no factor of these sets encloses one".into(),
+    };
     let leave = format!("of {} motions or parts left out in turn, {leave}, and {grow}", all.len());
     if part <= most[0] && growth <= most[1] {
         let accepted = format!("at most {} % and {} are accepted", 100.0 * most[0], most[1]);

@@ -70,6 +70,7 @@ pub fn build(
     say: &mut dyn FnMut(&Choice),
     progress: &dyn Progress,
 ) -> Result<Built> {
+    given.check_numbers()?;
     let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
     let settings = PrepareSettings { torque: Some(torque), ..given.prepare_settings() };
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
@@ -201,8 +202,8 @@ fn sets(
             (found, horizon, "given".to_string())
         }
         None => {
-            let (found, horizon) = longest_of_all(trial, recordings, &horizons, largest)?;
-            let reason = reason_of_horizon(&found.answer, horizon, &horizons, largest);
+            let (found, horizon, wide) = longest_of_all(trial, recordings, &horizons, largest)?;
+            let reason = reason_of_horizon(&found.answer, wide, (&horizons, horizon), largest);
             (found, horizon, reason)
         }
     };
@@ -213,35 +214,44 @@ fn sets(
     Ok((found, horizons))
 }
 
+/// The joint, from 0, whose set is widest beside its motion, and the ratio.
+type Widest = (usize, f64);
+
 /// Finds the sets over all windows of the longest horizon at which none is wider beside the motion
 /// than `largest`. The horizons were tried on some windows only, so that all of them may need a
-/// shorter one.
+/// shorter one: the widest set of the next longer horizon is returned too, then.
 fn longest_of_all(
     trial: &Trial,
     recordings: &Prepared,
     tried: &[HorizonWidths],
     largest: f64,
-) -> Result<(Widened, f64)> {
+) -> Result<(Widened, f64, Option<Widest>)> {
     let mut horizon = longest(tried, largest).horizon;
+    let mut wide = None;
     loop {
         let run = || Widened::new(trial, recordings, horizon);
         let shorter = tried.iter().rev().find(|other| other.horizon < horizon);
         let Some(shorter) = shorter.filter(|shorter| shorter.worst().1 <= largest) else {
-            return Ok((run()?, horizon));
+            return Ok((run()?, horizon, wide));
         };
         // A job that continues does not find sets again that were too wide.
         let mut found = None;
-        let name = format!("{horizon} s, all windows, {}", trial.name());
-        let is_narrow = trial.journal.step(&name, || {
+        let name = format!("{horizon} s, widest of all windows, {}", trial.name());
+        let (joint, ratio) = trial.journal.step(&name, || {
             let widened = run()?;
-            let is_narrow = worst(&widened.answer).1 <= largest;
+            let (joint, ratio) = worst(&widened.answer);
             found = Some(widened);
-            Ok(is_narrow)
+            // Files have no infinite numbers.
+            Ok((joint, ratio.is_finite().then_some(ratio)))
         })?;
-        match (is_narrow, found) {
-            (true, Some(widened)) => return Ok((widened, horizon)),
-            (true, None) => return Ok((run()?, horizon)),
-            (false, _) => horizon = shorter.horizon,
+        let ratio = ratio.unwrap_or(f64::INFINITY);
+        match (ratio <= largest, found) {
+            (true, Some(widened)) => return Ok((widened, horizon, wide)),
+            (true, None) => return Ok((run()?, horizon, wide)),
+            (false, _) => {
+                wide = Some((joint, ratio));
+                horizon = shorter.horizon;
+            }
         }
     }
 }
@@ -311,10 +321,12 @@ fn preparation(choices: &Choices, torque: Torque) -> Preparation {
     }
 }
 
+/// Returns why a horizon was chosen. `wide` is the widest set of all windows of the next longer
+/// one, if these were tried.
 fn reason_of_horizon(
     answer: &Answer,
-    horizon: f64,
-    tried: &[HorizonWidths],
+    wide: Option<Widest>,
+    (tried, horizon): (&[HorizonWidths], f64),
     largest: f64,
 ) -> String {
     let name = |joint: usize| &answer.model.robot.joints[joint].name;
@@ -324,9 +336,12 @@ fn reason_of_horizon(
     if ratio > largest {
         words += &format!(", more than {}, and no other horizon is better", percent(largest));
     } else if let Some(next) = next {
-        let (joint, ratio) = next.worst();
+        let (windows, (joint, ratio)) = match wide {
+            Some(wide) => ("all", wide),
+            None => ("some of the", next.worst()),
+        };
         words += &format!(
-            "; at {} s some of the windows give {} ({})",
+            "; at {} s {windows} windows give {} ({})",
             next.horizon,
             percent(ratio),
             name(joint)

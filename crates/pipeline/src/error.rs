@@ -33,6 +33,16 @@ pub enum Error {
         /// The problem, with line and column.
         message: String,
     },
+    /// A choice has a value that it cannot have.
+    #[error("{key} = {value}; give {needed}")]
+    Choice {
+        /// The key in the settings.
+        key: &'static str,
+        /// The value.
+        value: String,
+        /// What it can be.
+        needed: &'static str,
+    },
     /// No recording shows a motion of several joints.
     #[error(
         "none of the {recordings} recordings shows a motion of several joints: {rest} at rest, \

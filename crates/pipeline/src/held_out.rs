@@ -56,10 +56,12 @@ impl Split {
         let (names, reason): (Vec<String>, String) = match (given, motions.len()) {
             (Some(names), _) => (names, "given".into()),
             (None, count) if count < FEW && recordings.len() >= REPEATS * count => {
-                let reason = format!(
-                    "every fourth recording of each of {count} motions; nothing follows for other \
-                     motions"
-                );
+                let each = match count {
+                    1 => "the motion".to_string(),
+                    _ => format!("each of {count} motions"),
+                };
+                let reason =
+                    format!("every fourth recording of {each}; nothing follows for other motions");
                 (fourths(&recordings, &motions), reason)
             }
             (None, 1) => return Ok(Self::in_time(recordings)),

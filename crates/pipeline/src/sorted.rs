@@ -9,6 +9,7 @@ use reachtube_conform::result::Code;
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
 use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated};
 use reachtube_robot::Robot;
+use reachtube_scalar::number::counted;
 
 use crate::choices::Choices;
 use crate::chooser::Chooser;
@@ -47,7 +48,7 @@ impl Sorted {
     ) -> Result<Self> {
         let entries: Vec<LogEntry> = given.data.iter().cloned().map(LogEntry::from).collect();
         let raw = read(&entries, Path::new(""), robot, settings)?;
-        let raw: Vec<Arc<RawLog>> = raw.into_iter().map(Arc::new).collect();
+        let (raw, copies) = without_copies(raw);
         let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
         let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
         let of = |kind: Kind| -> Vec<&Arc<RawLog>> {
@@ -70,11 +71,11 @@ impl Sorted {
             "data",
             format!("{} recordings", raw.len()),
             format!(
-                "{} at rest, {} of one joint at a time, {} of several joints ({} motions)",
+                "{} at rest, {} of one joint at a time, {} of several joints ({})",
                 count(Kind::Rest),
                 count(Kind::OneJoint),
                 moving.len(),
-                distinct
+                counted(distinct, "motion")
             ),
         );
         let recordings = moving.iter().zip(names);
@@ -85,10 +86,36 @@ impl Sorted {
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
         let findings =
             raw.iter().flat_map(|log| log.moved.iter().map(|text| warning(Code::TurnsMoved, text)));
-        let findings = findings.collect();
+        let findings = copies.into_iter().chain(findings).collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         Ok(Self { rest, one_joint, motions, notes, findings, simulated, digest })
     }
+}
+
+/// Leaves out recordings that are equal to the last byte to one before: they are no evidence, and a
+/// copy must not be held out beside its original. Returns a warning that names the first.
+fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
+    let mut first: BTreeMap<String, PathBuf> = BTreeMap::new();
+    let mut copies: Vec<[PathBuf; 2]> = Vec::new();
+    let mut kept = Vec::new();
+    for log in raw {
+        match first.get(&log.run.sha256) {
+            Some(original) => copies.push([log.file, original.clone()]),
+            None => {
+                first.insert(log.run.sha256.clone(), log.file.clone());
+                kept.push(Arc::new(log));
+            }
+        }
+    }
+    let finding = copies.first().map(|[copy, original]| {
+        let text = match copies.len() {
+            1 => "a recording is a copy of another and is left out".to_string(),
+            count => format!("{count} recordings are copies of others and are left out"),
+        };
+        let pair = format!("{} is a copy of {}", copy.display(), original.display());
+        warning(Code::Recordings, &format!("{text}: {pair}"))
+    });
+    (kept, finding)
 }
 
 /// Returns the motion, or else the suite, of each recording by its name, where an index names it.

@@ -31,7 +31,9 @@ impl Built {
             }
         };
         let (windows, what) = (model.data.run_count(), self.unit());
-        format!("{verdict}: {windows} {what}, each sample proved with directed rounding")
+        let proof =
+            if self.answer.holds() { ", each sample proved with directed rounding" } else { "" };
+        format!("{verdict}: {windows} {what}{proof}")
     }
 
     /// Returns the answer on a few lines, for users of a front end: the verdict with the horizon,
@@ -48,7 +50,8 @@ impl Built {
         }
         // What was mended in the recordings comes before what was made of them.
         summary.verdict.splice(0..0, self.moved());
-        if !self.is_useful() {
+        // A contradiction is the cause, and no other is sought.
+        if !self.is_useful() && self.contradiction().is_none() {
             let findings = self.answer.model.findings().into_iter();
             let causes = findings.filter(|finding| finding.code == Code::Cause);
             summary.verdict.extend(causes.map(|finding| finding.written_for(FrontEnd::Choices)));
@@ -70,7 +73,7 @@ impl Built {
         for finding in &self.remedies {
             summary.fact("would help", finding.written_for(FrontEnd::Choices));
         }
-        summary.fact("widest set by horizon, of the motion", self.growth());
+        summary.fact("widest set by horizon, of the motion in some windows", self.growth());
         summary.next = None;
         summary
     }

@@ -63,6 +63,7 @@ mod state;
 mod text;
 mod torque;
 mod units;
+mod wraps;
 
 pub use data_set::{DataSet, any_simulated};
 pub use decimal::picoseconds;

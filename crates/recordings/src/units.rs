@@ -81,8 +81,8 @@ fn positions_per_integrals(run: &Run) -> Vec<Option<f64>> {
 const LARGEST_TORQUE: f64 = 1e6;
 
 /// Returns the defects of a run whose values cannot be in the robot's units: q against ∫q̇ dt,
-/// positions and velocities far beyond the joints' limits, and torques beyond a million N m. `path`
-/// names the run.
+/// positions and velocities far beyond the joints' limits, velocities of 0 of a joint that moves,
+/// and torques beyond a million N m. `path` names the run.
 ///
 /// # Panics
 ///
@@ -94,7 +94,23 @@ pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
     defects.extend(position_defects(path, &furthest[..run.joints], robot));
     defects.extend(velocity_defects(path, &furthest[run.joints..], robot));
     defects.extend(torque_defects(path, run, &robot.kinds()));
+    defects.extend(dead_velocities(path, run, &furthest[run.joints..]));
     defects
+}
+
+/// Returns a defect for each joint that moves while its velocity is 0 in all samples; `fastest` has
+/// the largest |q̇| of each joint.
+fn dead_velocities(path: &Path, run: &Run, fastest: &[f64]) -> Vec<Defect> {
+    let moves = |joint: &usize| {
+        (0..run.len()).any(|k| (run.q(k)[*joint] - run.q(0)[*joint]).abs() > MIN_MOTION)
+    };
+    let dead = (0..run.joints).filter(|joint| fastest[*joint] == 0.0).filter(moves);
+    let defect = |joint: usize| {
+        let problem = "qd is 0 in every sample, although the joint moves".to_string();
+        let remedy = "record the velocity, or delete the columns of qd; `model` derives them";
+        joint_defect(path, joint, problem, remedy)
+    };
+    dead.map(defect).collect()
 }
 
 /// Returns the largest magnitude in each column of `rows`, row-major with `width` columns.
@@ -205,6 +221,26 @@ mod tests {
 
     use super::check_limits;
     use crate::run::Run;
+
+    #[test]
+    fn a_velocity_of_zero_of_a_joint_that_moves_is_a_defect() {
+        let robot = Robot::lwa4p();
+        let words = |velocity: f64| {
+            let state = |k: usize| {
+                let mut state = vec![0.0; 12];
+                state[2] = 0.1 * k as f64;
+                state[8] = velocity;
+                state
+            };
+            let states = (0..3).flat_map(state).collect();
+            let run = Run::new(6, vec![0.0, 0.1, 0.2], states, vec![1.0; 18]).unwrap();
+            let defects = check_limits(Path::new("run.csv"), &run, &robot);
+            defects.iter().map(ToString::to_string).collect::<String>()
+        };
+        assert_eq!(words(1.0), "");
+        let dead = words(0.0);
+        assert!(dead.contains("joint 3") && dead.contains("qd is 0 in every sample"), "{dead}");
+    }
 
     #[test]
     fn a_torque_that_no_joint_has_is_a_defect() {

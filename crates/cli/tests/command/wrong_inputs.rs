@@ -94,7 +94,7 @@ fn logs_that_cannot_be_read_are_refused_with_the_cause() {
                 row[6] = 1e300;
             }
         }),
-        ("log_1.csv: joint 1: |q| reaches 1.0e300", &|row, k, number| {
+        ("log_1.csv:102: column \"q1\" is 1e300, which no joint has", &|row, k, number| {
             if (k, number) == (100, 1) {
                 row[1] = 1e300;
             }
@@ -145,6 +145,41 @@ fn logs_that_contradict_the_robot_give_no_acceptable_model() {
     fits("model", &answer);
     assert_eq!(answer["findings"][0]["code"], "contradiction");
     assert_eq!(answer["findings"][0]["severity"], "warning");
+}
+
+#[test]
+fn inspect_knows_the_limits_that_model_knows() {
+    let lab = lab();
+    lab.write("arm.toml", arm(1.0));
+    write(&lab, &|row, _, _| row[1..=4].iter_mut().for_each(|cell| *cell = cell.to_degrees()));
+    let words = "but the joint's limits are -3.1 and 3.1 rad";
+    for command in [MODEL, "inspect --robot arm.toml --data logs --quiet"] {
+        let run = lab.run(command).exits(2);
+        assert!(run.stderr.contains(words), "{run:#?}");
+    }
+    // The unit may be stated.
+    let stated = lab.run("inspect --robot arm.toml --data logs --columns angle=deg").exits(0);
+    assert!(stated.stderr.contains("positions are in degrees"), "{stated:#?}");
+}
+
+#[test]
+fn copies_are_left_out_and_a_log_that_ended_at_once_changes_nothing() {
+    let lab = lab();
+    lab.write("arm.toml", arm(1.0));
+    write(&lab, &|_, _, _| ());
+    let alone = lab.run(&format!("{MODEL} --json")).json();
+    std::fs::copy(lab.path("logs/log_1.csv"), lab.path("logs/log_9.csv")).unwrap();
+    let text = std::fs::read_to_string(lab.path("logs/log_1.csv")).unwrap();
+    let short: String = text.lines().take(2).map(|line| format!("{line}\n")).collect();
+    lab.write("logs/short.csv", short);
+    let answer = lab.run(&format!("{MODEL} --json")).json();
+    fits("model", &answer);
+    let finding = answer["findings"].as_array().unwrap().iter().find(|f| f["code"] == "recordings");
+    let text = finding.expect("the copy is named")["text"].as_str().unwrap();
+    assert!(text.contains("log_9.csv is a copy of") && text.contains("log_1.csv"), "{text}");
+    for key in ["useful", "horizon", "joints", "held_out"] {
+        assert_eq!(answer[key], alone[key], "{key}");
+    }
 }
 
 #[test]
@@ -211,7 +246,7 @@ const WRONG: [(&str, i32, Change); 9] = [
     ("is a turn away from other recordings", 0, &|row, number, _| {
         row[1] += if number == 2 { TAU } else { 0.0 };
     }),
-    ("|q| reaches 1.0e300", 2, &|row, number, _| {
+    ("is 1e300, which no joint has", 2, &|row, number, _| {
         if number == 1 && row[0] > 5.0 {
             row[2] = 1e300;
         }

@@ -44,7 +44,7 @@ pub(crate) const FORMAT: &str = "reachtube-model";
 /// `docs/model.schema.json`.
 pub(crate) const VERSION: u32 = 3;
 
-const REMEDY: &str = "give a file that `conform --out` wrote";
+const REMEDY: &str = "give a file that `model` or `conform` wrote, such as arm/model.json";
 
 /// Number of tight values kept in a file at most: as many as a degenerate program may have would
 /// make it unreadable.

@@ -58,8 +58,15 @@ impl Check {
         // The command `model` has widened its sets for motions left out.
         let is_widened = model.calibration.is_some() || !model.allowance.is_empty();
         let is_wide = !is_widened && !self.verdict.conformant;
-        let helps = lost.or_else(|| is_wide.then(|| Remedy::new("calibrate", "MOTION,..")));
-        summary.next = helps.map(|remedy| remedy.written_for(front_end));
+        let next = match lost {
+            Some(remedy) => Some(remedy.written_for(front_end)),
+            // `model` has no calibration: it holds motions out by itself.
+            None if is_wide && model.preparation.is_some() => {
+                Some("make the model again, with these recordings among its logs".into())
+            }
+            None => is_wide.then(|| Remedy::new("calibrate", "MOTION,..").written_for(front_end)),
+        };
+        summary.next = next;
         summary
     }
 
@@ -122,7 +129,12 @@ fn table_of_suites(failing: &[&SuiteVerdict], kinds: &[JointKind]) -> Table {
         let place = worst.map(|worst| {
             let unit = worst.state.kind.unit(kinds[worst.state.joint]);
             let excess = two_digits_up(worst.excess);
-            format!("{}, {:.3} s: {} by {excess} {unit}", worst.run, worst.time, worst.state)
+            // A window is a suite of one run, whose name the first column has.
+            let run = match worst.run == suite.suite {
+                true => String::new(),
+                false => format!("{}, ", worst.run),
+            };
+            format!("{run}{:.3} s: {} by {excess} {unit}", worst.time, worst.state)
         });
         vec![
             suite.suite.clone(),

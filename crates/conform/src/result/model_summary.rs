@@ -63,10 +63,15 @@ impl Answer {
 impl Model {
     /// Returns the factor that the motion needs whose absence changes the sets most.
     fn motion_left_out(&self) -> Option<(String, String)> {
-        let gauges = self.left_out.iter().filter_map(|left| Some((left.gauge?, &left.motion)));
+        let gauges = self.left_out.iter().filter_map(|left| {
+            left.cost.map(|_| (left.gauge.unwrap_or(f64::INFINITY), &left.motion))
+        });
         let (gauge, motion) = gauges.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let of = self.left_out.len();
-        let value = format!("at most {}, of {of} motions ({motion})", two_digits_up(gauge));
+        let value = match gauge.is_finite() {
+            true => format!("at most {}, of {of} motions ({motion})", two_digits_up(gauge)),
+            false => format!("none suffices for {motion}, one of {of} motions"),
+        };
         Some(("factor for a motion left out".into(), value))
     }
 

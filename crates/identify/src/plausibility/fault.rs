@@ -134,7 +134,8 @@ impl Fault {
                     name(b)
                 ),
                 "exchanging them".into(),
-                "correct the order of the columns, or name it with prepare.joints".into(),
+                "correct the order of the columns (`identify` and `prepare` can take it by names)"
+                    .into(),
             ],
             Self::Offset { joint, offset } => [
                 format!(

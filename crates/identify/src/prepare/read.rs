@@ -9,7 +9,7 @@ use reachtube_logs::LogFiles;
 use reachtube_recordings::{
     Defect, LoggedOptions, ReadOptions, Run, check_limits, is_recording, read_csv, read_logged,
 };
-use reachtube_robot::Robot;
+use reachtube_robot::{JointKind, Robot};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -161,9 +161,14 @@ impl Source {
         settings: &PrepareSettings,
     ) -> Result<(Run, Vec<String>)> {
         match files {
-            [file] if is_recording(file) => {
+            [file] if is_recording(file, &settings.columns) => {
                 let order = column_order(robot, &settings.joints)?;
-                Ok((self.read_recording(file, robot, settings, &order)?, vec![]))
+                let run = self.read_recording(file, robot, settings, &order)?;
+                match has_jumps(&run, robot) {
+                    // A log's reader takes them out, and names them.
+                    true => self.read_logged(files, robot, settings),
+                    false => Ok((run, vec![])),
+                }
             }
             files => {
                 column_order(robot, &settings.joints)?;
@@ -207,6 +212,12 @@ impl Source {
         let logged = read_logged(files, &options).map_err(refused)?;
         Ok((logged.run, logged.notes))
     }
+}
+
+/// Returns whether a revolute joint jumps by whole turns.
+fn has_jumps(run: &Run, robot: &Robot) -> bool {
+    let kinds = robot.kinds();
+    (0..run.joints).any(|joint| kinds[joint] == JointKind::Revolute && run.jumps_by_turns(joint))
 }
 
 /// Checks limits and times of a recording.
@@ -314,6 +325,39 @@ mod tests {
         let nowhere =
             read(&[LogEntry::Path("b".into())], folder.path(), &robot, &PrepareSettings::default());
         assert!(nowhere.unwrap_err().to_string().contains("folder of logs"));
+    }
+
+    #[test]
+    fn turns_within_a_recording_are_taken_out_and_stated_units_count() {
+        let folder = tempfile::tempdir().unwrap();
+        let names = ["q", "qd", "tau"].map(|n| (1..=6).map(move |i| format!(",{n}{i}")));
+        let header: String = names.into_iter().flatten().collect();
+        let read = |turn: f64, scale: f64, columns: &str| {
+            let row = |k: usize| {
+                let t = 0.01 * k as f64;
+                let turns = if k < 150 { 0.0 } else { turn };
+                let first = format!(",{}", scale * (t.sin() + turns));
+                let others = format!(",{}", scale * t.sin()).repeat(5);
+                let velocities = format!(",{}", scale * t.cos()).repeat(6);
+                format!("{t}{first}{others}{velocities}{}\n", ",2".repeat(6))
+            };
+            let rows: String = (0..300).map(row).collect();
+            let path = folder.path().join("a.csv");
+            std::fs::write(&path, format!("t{header}\n{rows}")).unwrap();
+            let columns = columns.parse().unwrap();
+            let settings = PrepareSettings { columns, ..PrepareSettings::default() };
+            read(&[path.into()], folder.path(), &Robot::lwa4p(), &settings).unwrap().remove(0)
+        };
+        let smooth = read(0.0, 1.0, "");
+        for (turn, scale, columns, note) in [
+            (std::f64::consts::TAU, 1.0, "", "joint1 jumps by whole turns at 1.500 s"),
+            (0.0, 1f64.to_degrees(), "angle=deg", "in degrees"),
+        ] {
+            let log = read(turn, scale, columns);
+            assert!(log.notes.concat().contains(note), "{:?}", log.notes);
+            let mut pairs = smooth.run.states.iter().zip(&log.run.states);
+            assert!(pairs.all(|(a, b)| (a - b).abs() < 1e-12), "{note}");
+        }
     }
 
     #[test]

@@ -7,18 +7,21 @@ use std::path::{Path, PathBuf};
 use super::assignment::quantity_of_file;
 use super::dialect::Dialect;
 use super::name::{ColumnName, Quantity};
+use super::settings::ColumnSettings;
 use crate::header::is_strict_header;
 
 /// Bytes in which a header ends.
 const HEADER_BYTES: u64 = 1 << 16;
 
 /// Returns whether a file is a recording in the format of `docs/recordings.md`, with the header
-/// `t,q1..qn,qd1..qdn,tau1..taun`. Other files are logs, which [`read_logged`](super::read_logged)
-/// reads. A file that cannot be read is taken for a recording, whose reader says why.
+/// `t,q1..qn,qd1..qdn,tau1..taun`, and `columns` do not state other units than its own. Other files
+/// are logs, which [`read_logged`](super::read_logged) reads. A file that cannot be read is taken
+/// for a recording, whose reader says why.
 #[must_use]
-pub fn is_recording(file: &Path) -> bool {
+pub fn is_recording(file: &Path, columns: &ColumnSettings) -> bool {
+    let has_units = columns.angle.is_some() || columns.time_unit.is_some();
     // Reading a pipe would empty it.
-    !file.is_file() || head(file).is_none_or(|bytes| is_strict_header(&bytes))
+    !file.is_file() || (!has_units && head(file).is_none_or(|bytes| is_strict_header(&bytes)))
 }
 
 fn head(file: &Path) -> Option<Vec<u8>> {

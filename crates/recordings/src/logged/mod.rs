@@ -18,7 +18,6 @@ mod settings;
 mod time_column;
 mod understood;
 mod unit;
-mod wraps;
 
 pub use files::{csv_files, group_files, is_recording};
 pub use log_settings::{LogSettings, LogTime};

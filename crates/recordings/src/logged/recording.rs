@@ -14,9 +14,9 @@ use super::options::LoggedOptions;
 use super::recognise::{Numbers, Units, recognise};
 use super::understood::Understood;
 use super::unit::TimeUnit;
-use super::wraps::unwrap;
 use crate::defect::{Defect, DefectKind};
 use crate::run::Run;
+use crate::wraps::unwrap;
 
 /// A joint that leaves its first position by more than this moves, rad or m.
 const MOVES: f64 = 0.05;

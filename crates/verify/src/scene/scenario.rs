@@ -53,6 +53,8 @@ pub struct Scene {
     pub clearance: f64,
     /// Number of parts into which a step is divided, at most, where its enclosure comes too close.
     pub refine: u32,
+    /// The time up to which samples are used, s; all if `None`. A verdict says so.
+    pub until: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -223,7 +225,7 @@ impl Scenario {
             }
         }
         let clearance = clearance.as_ref().map_or(0.0, |clearance| *clearance.get_ref());
-        Ok(Scene { obstacles, clearance, refine: parts })
+        Ok(Scene { obstacles, clearance, refine: parts, until: self.until })
     }
 
     /// Returns the stops of the scenario, with their brakes; `None` if it has none. The torque of

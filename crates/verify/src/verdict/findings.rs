@@ -40,7 +40,8 @@ fn verdict(worst: &Verification, scene: &Scene) -> Finding {
         clearance => format!(" more than {clearance} m"),
     };
     let case = &worst.case;
-    let stopped = stop_verdict(worst, &keep);
+    let until = scene.until.map_or_else(String::new, |until| format!(" up to {until} s"));
+    let stopped = stop_verdict(worst, &keep, &until);
     let finding = match worst.answer {
         Answer::Unsafe => {
             Finding::new(Severity::Failure, Code::Unsafe, too_close(worst).unwrap_or_default())
@@ -48,8 +49,9 @@ fn verdict(worst: &Verification, scene: &Scene) -> Finding {
         Answer::Safe => {
             let text = match worst.clearances.first() {
                 Some(pair) => format!(
-                    "safe: on every motion of the model each link stays{keep} clear; the smallest \
-                     proved distance is {} m, of the link of {} from `{}` at {:.3} s ({case}).",
+                    "safe: on every motion of the model{until} each link stays{keep} clear; the \
+                     smallest proved distance is {} m, of the link of {} from `{}` at {:.3} s \
+                     ({case}).",
                     lower(pair.distance),
                     pair.link,
                     pair.obstacle,

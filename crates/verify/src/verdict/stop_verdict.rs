@@ -5,8 +5,9 @@ use reachtube_scalar::number::outward;
 use crate::verdict::verification::{Answer, Verification};
 
 /// Returns the verdict about a motion as a sentence if its stops decide: always if a stop is
-/// triggered at a distance, and else if they come closer than the motion without a stop.
-pub(crate) fn stop_verdict(worst: &Verification, keep: &str) -> Option<String> {
+/// triggered at a distance, and else if they come closer than the motion without a stop. `keep`
+/// names the distance to keep, and `until` the time up to which samples are used.
+pub(crate) fn stop_verdict(worst: &Verification, keep: &str, until: &str) -> Option<String> {
     let stops = worst.stops.as_ref()?;
     let closest = stops.clearances.first();
     let motion = worst.clearances.first();
@@ -26,8 +27,8 @@ pub(crate) fn stop_verdict(worst: &Verification, keep: &str) -> Option<String> {
         ));
     }
     let when = match stops.triggered_at {
-        Some(distance) => format!("that is triggered at {distance} m"),
-        None => "from any sample".into(),
+        Some(distance) => format!("that is triggered at {distance} m{until}"),
+        None => format!("from any sample{until}"),
     };
     let Some(stop) = closest else { return Some("safe: no obstacle concerns a link.".into()) };
     let (link, obstacle, from) = (&stop.link, &stop.obstacle, stop.from);

@@ -201,7 +201,7 @@ fn simulated_stops_stay_as_far_from_an_obstacle_as_is_proved() {
         let centre = to + 0.15 * (to - tip).normalize();
         let solid = Solid::Capsule { from: centre.into(), to: centre.into(), radius: 0.01 };
         let obstacle = Obstacle { name: "ball".into(), solid, speed: 0.0, joints: None };
-        let scene = Scene { obstacles: vec![obstacle], clearance: 0.0, refine: 1 };
+        let scene = Scene { obstacles: vec![obstacle], clearance: 0.0, refine: 1, until: None };
         let rule = StopRule { brakes: brakes(), category: Category::Zero, distance: None };
         let before = Verification {
             case: "S".into(),

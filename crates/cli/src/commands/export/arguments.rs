@@ -69,7 +69,7 @@ const FORMS: Choices = &[
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Model file that `conform --out` wrote
+    /// Model file that `model` or `conform` wrote
     #[arg(long, value_name = "FILE", required_unless_present = "robot")]
     pub model: Option<PathBuf>,
     /// Robot in place of a model, for mjcf, urdf and armour

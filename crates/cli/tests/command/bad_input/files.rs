@@ -127,7 +127,7 @@ pub(super) const CASES: &[Case] = &[
         "no model file",
         |_| (),
         "check --model none.json --data data --torque compensated",
-        &["none.json: cannot read", "give a file that `conform --out` wrote"],
+        &["none.json: cannot read", "give a file that `model` or `conform` wrote"],
     ),
     Case::refused(
         "a model that is no JSON",

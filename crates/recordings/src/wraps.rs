@@ -9,7 +9,7 @@ const TOLERANCE: f64 = 0.1;
 const SUDDEN: f64 = 5.0;
 
 /// Returns whether the step to sample `k` is one of whole turns, where steps about it are short.
-pub(super) fn is_wrap(q: &[f64], k: usize, turn: f64) -> bool {
+pub(crate) fn is_wrap(q: &[f64], k: usize, turn: f64) -> bool {
     let step = (q[k] - q[k - 1]).abs();
     let turns = (step / turn).round();
     let about = |k: usize| match k.checked_sub(1) {
@@ -22,9 +22,8 @@ pub(super) fn is_wrap(q: &[f64], k: usize, turn: f64) -> bool {
         && step > SUDDEN * about(k + 1)
 }
 
-/// Takes jumps by whole turns out of the positions of a joint, rad, and returns the samples to
-/// which it jumped.
-pub(super) fn unwrap(q: &mut [f64]) -> Vec<usize> {
+/// Returns the samples to which the positions of a joint, rad, jump by whole turns.
+pub(crate) fn jumps(q: &[f64]) -> Vec<usize> {
     let turn = 2.0 * PI;
     // A joint near half a turn may jump to and fro with the noise of its sensor, so the steps about
     // a jump count without their turns.
@@ -37,15 +36,24 @@ pub(super) fn unwrap(q: &mut [f64]) -> Vec<usize> {
             && off(step) < TOLERANCE * turn
             && about.iter().all(|other| step.abs() > SUDDEN * other)
     };
+    (0..steps.len()).filter(|at| is_jump(*at)).map(|at| at + 1).collect()
+}
+
+/// Takes jumps by whole turns out of the positions of a joint, rad, and returns the samples to
+/// which it jumped.
+pub(crate) fn unwrap(q: &mut [f64]) -> Vec<usize> {
+    let turn = 2.0 * PI;
+    let jumps = jumps(q);
+    let mut shifts = Vec::with_capacity(jumps.len());
     let mut shift = 0.0;
-    let mut jumps = Vec::new();
-    for at in 0..steps.len() {
-        if is_jump(at) {
-            shift -= (steps[at] / turn).round();
-            jumps.push(at + 1);
-        }
+    for at in &jumps {
+        shift -= ((q[*at] - q[at - 1]) / turn).round();
+        shifts.push(shift);
+    }
+    let ends = jumps.iter().skip(1).copied().chain([q.len()]);
+    for ((from, to), shift) in jumps.iter().zip(ends).zip(shifts) {
         if shift != 0.0 {
-            q[at + 1] += shift * turn;
+            q[*from..to].iter_mut().for_each(|q| *q += shift * turn);
         }
     }
     jumps
