@@ -137,7 +137,7 @@ fn vertex(sides: &[Interval], run: usize) -> Vec<f64> {
         }
         let j = uncertain.next().unwrap_or(0) % (RUNS - 1);
         let mask = if 1 << j < RUNS { 1 << j } else { RUNS - 1 - j };
-        if (run & mask).count_ones() % 2 == 0 { side.lo() } else { side.hi() }
+        if (run & mask).count_ones().is_multiple_of(2) { side.lo() } else { side.hi() }
     };
     sides.iter().map(end).collect()
 }
