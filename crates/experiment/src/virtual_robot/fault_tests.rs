@@ -330,6 +330,7 @@ fn the_table_of_faults() {
         any_time(Direction::Random),
         any_time(Direction::Down),
         Fault::Slip(0.002),
+        Fault::Slip(0.005),
         Fault::Payload(0.5),
         Fault::Payload(2.0),
         Fault::Drag(1.0),
@@ -340,7 +341,8 @@ fn the_table_of_faults() {
         let left = summary(found.iter().map(|found| found.left));
         let alarm = summary(found.iter().map(|found| Some(found.alarm.as_ref()?.0)));
         let early: usize = found.iter().map(|found| found.early).sum();
-        println!("{fault:?}: left {left}; alarm {alarm}; early {early}");
+        let either = found.iter().filter(|f| f.left.is_some() || f.alarm.is_some()).count();
+        println!("{fault:?}: left {left}; alarm {alarm}; either {either}; early {early}");
         let first = found.iter().filter_map(|found| found.alarm.as_ref());
         first.for_each(|(_, text)| println!("    {text}"));
     }
