@@ -34,7 +34,7 @@ mod program;
 mod progress;
 mod reach;
 pub mod result;
-pub mod search;
+mod search;
 mod sets;
 mod stiction;
 pub mod tube;

@@ -307,7 +307,7 @@ fn uniform(random: &mut SplitMix64, bound: f64) -> f64 {
 #[ignore = "measures the own solver beside the conic one; takes a while"]
 fn a_long_chain_has_the_optimum_of_a_conic_program() {
     let mut random = SplitMix64::seed_from_u64(3);
-    let (states, width, links) = (12, 6, 1000);
+    let (states, width, links) = (12, 6, 300);
     let (mut chain, mut matrices) = (Chain::new(states), Vec::new());
     for k in 0..links {
         let mut entries = |rows, columns, size: f64| {

@@ -16,6 +16,7 @@ pub(crate) mod summary;
 pub(crate) mod table;
 
 pub use crate::advice::Advice;
+pub use crate::search::found::SearchSummary;
 pub use code::Code;
 pub use finding::Severity;
 pub use front_end::{FrontEnd, Setting};

@@ -9,5 +9,3 @@ pub(crate) mod prove;
 #[expect(clippy::module_inception, reason = "the folder and its main function share the noun")]
 mod search;
 pub(crate) mod smallest_sets;
-
-pub use found::SearchSummary;

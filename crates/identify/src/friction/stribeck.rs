@@ -203,7 +203,7 @@ mod tests {
             let torque = (3.0 + rise) * qd / qd.abs() + 6.0 * qd + 1.7 * qdd + 0.2 * random();
             FrictionSample { qd, qdd, load, torque, factors: [1.0; 2] }
         };
-        let samples: Vec<_> = (1..3000).map(sample).filter(|s| s.qd.abs() > slowest).collect();
+        let samples: Vec<_> = (1..1000).map(sample).filter(|s| s.qd.abs() > slowest).collect();
         fit_with_stribeck("joint", &samples, 0.6).unwrap()
     }
 
