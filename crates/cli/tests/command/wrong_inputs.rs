@@ -227,7 +227,7 @@ fn rewrite(lab: &Lab, (folder, count): (&Path, usize), change: &dyn Fn(&mut [f64
 /// Changes one row of a recording, with its number and the number of joints.
 type Change<'a> = &'a dyn Fn(&mut [f64], usize, usize);
 
-/// The recordings of the UR10e that last 30 seconds at most, which come first.
+/// How many recordings of the UR10e last less than 40 seconds. They come first.
 const SHORT: usize = 5;
 
 /// What is wrong with recordings that are otherwise right: the cause that is named, the

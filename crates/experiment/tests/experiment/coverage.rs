@@ -40,7 +40,7 @@ fn assert_holds(coverage: &Coverage) {
 
 #[test]
 fn bounds_for_the_next_motion_hold_in_a_few_campaigns() {
-    assert_holds(&simulate(2, 200));
+    assert_holds(&simulate(4, 200));
 }
 
 #[test]
