@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::findings::{impossible_links, unless_accepted};
 use crate::first_choices::first_choices;
 use crate::held_out::Split;
-use crate::horizon::{HorizonWidths, longest, try_horizons};
+use crate::horizon::{HorizonWidths, longest, try_horizons, try_longer};
 use crate::journal::{Journal, digest};
 use crate::motors::unknown_motors;
 use crate::remedies::TooWide;
@@ -181,20 +181,11 @@ fn sets(
     chooser.choices.largest_growth.get_or_insert(LARGEST_GROWTH);
     chooser.choices.largest_outside.get_or_insert(LARGEST_OUTSIDE);
     let mut horizons = choose_equations(chooser, trial, recordings, largest)?;
-    let groups = chooser.choices.fit.clone().unwrap_or_default();
-    let pull = chooser.choices.pull;
-    let fit = (!groups.is_empty()).then(|| FitSettings { groups: groups.clone(), pull });
-    let reason = match fit {
-        Some(_) => "given",
-        None => "a fit makes sets smaller, but takes minutes",
-    };
-    let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
-    let value = if names.is_empty() { "nothing".into() } else { names.join(", ") };
-    chooser.choose("fit", value, reason);
-    chooser.choices.fit = Some(groups);
-    if fit.is_some() {
-        trial.fit = fit;
-        horizons = try_horizons(&trial.of_horizons(chooser.choices.horizon), recordings)?;
+    choose_fit(chooser, trial, longest(&horizons, largest).horizon);
+    if trial.fit.is_some() && chooser.choices.horizon.is_none() {
+        let shorter = longest(&horizons, largest).horizon;
+        horizons.retain(|widths| widths.horizon <= shorter);
+        horizons.extend(try_longer(trial, recordings, shorter, largest)?);
     }
     let (found, horizon, reason) = match chooser.choices.horizon {
         Some(horizon) => {
@@ -212,6 +203,23 @@ fn sets(
     chooser.choose("allowance", found.words(), &found.reason);
     chooser.choices.allowance = Some(found.allowance.clone());
     Ok((found, horizons))
+}
+
+/// Chooses what is fitted. A fit makes sets narrower and takes long, so that horizons up to
+/// `without`, whose sets are narrow without it, are not tried again.
+fn choose_fit(chooser: &mut Chooser, trial: &mut Trial, without: f64) {
+    let groups = chooser.choices.fit.clone().unwrap_or_default();
+    let reason = match (groups.is_empty(), chooser.choices.horizon) {
+        (true, _) => "a fit makes sets smaller, but takes minutes".into(),
+        (false, Some(_)) => "given; other horizons were tried without it".into(),
+        (false, None) => format!("given; horizons up to {without} s were tried without it"),
+    };
+    let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
+    let value = if names.is_empty() { "nothing".into() } else { names.join(", ") };
+    chooser.choose("fit", value, reason);
+    let pull = chooser.choices.pull;
+    trial.fit = (!groups.is_empty()).then(|| FitSettings { groups: groups.clone(), pull });
+    chooser.choices.fit = Some(groups);
 }
 
 /// The joint, from 0, whose set is widest beside its motion, and the ratio.

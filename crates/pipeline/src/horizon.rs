@@ -45,22 +45,7 @@ impl HorizonWidths {
 ///
 /// [`Error::NoSets`] if none were found over the shortest horizon.
 pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<HorizonWidths>> {
-    let mut tried: Vec<HorizonWidths> = Vec::new();
-    let steps = recordings.logs.iter().map(|log| log.step);
-    let shortest = 3.0 * steps.fold(0.0, f64::max);
-    // A recording that counts from its start moves most in its middle, so all horizons are tried.
-    let whole = recordings.from_start.then(|| recordings.longest());
-    let shorter = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
-    for horizon in shorter.chain(whole).filter(|horizon| *horizon >= shortest) {
-        match try_horizon(trial, recordings, horizon, MOST_WINDOWS)? {
-            Some(widths) => tried.push(widths),
-            None => break,
-        }
-        let is_too_wide = tried.last().is_some_and(|widths| widths.worst().1 > TOO_WIDE);
-        if is_too_wide && whole.is_none() {
-            break;
-        }
-    }
+    let tried = try_longer(trial, recordings, 0.0, TOO_WIDE)?;
     match tried.first() {
         Some(HorizonWidths { reason: None, .. }) => Ok(tried),
         Some(HorizonWidths { horizon, reason: Some(reason), .. }) => {
@@ -68,6 +53,38 @@ pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<H
         }
         None => Err(Error::NoWindow { horizon: HORIZONS[0] }),
     }
+}
+
+/// Finds how the sets grow over horizons longer than `than`, up to the one at which the worst
+/// joint's set is wider than its motion by the factor `most`.
+///
+/// # Errors
+///
+/// A job that was cancelled.
+pub(crate) fn try_longer(
+    trial: &Trial,
+    recordings: &Prepared,
+    than: f64,
+    most: f64,
+) -> Result<Vec<HorizonWidths>> {
+    let mut tried: Vec<HorizonWidths> = Vec::new();
+    let steps = recordings.logs.iter().map(|log| log.step);
+    let shortest = 3.0 * steps.fold(0.0, f64::max);
+    // A recording that counts from its start moves most in its middle, so all horizons are tried.
+    let whole = recordings.from_start.then(|| recordings.longest());
+    let shorter = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
+    let longer = |horizon: &f64| *horizon > than && *horizon >= shortest;
+    for horizon in shorter.chain(whole).filter(longer) {
+        match try_horizon(trial, recordings, horizon, MOST_WINDOWS)? {
+            Some(widths) => tried.push(widths),
+            None => break,
+        }
+        let is_too_wide = tried.last().is_some_and(|widths| widths.worst().1 > most);
+        if is_too_wide && whole.is_none() {
+            break;
+        }
+    }
+    Ok(tried)
 }
 
 /// Finds how wide the sets are at a horizon, over at most `most` windows; `None` if no recording is

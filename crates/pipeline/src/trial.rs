@@ -41,12 +41,22 @@ pub(crate) struct Trial<'a> {
     pub journal: &'a Journal<'a>,
 }
 
-/// An observer of a job of many trials, who cancels each of them and counts none.
-pub(crate) struct OnlyCancels<'a>(&'a dyn Progress);
+/// An observer of a job of many trials, who cancels each of them and counts none. The
+/// parts of a fit, which takes long, are reported.
+pub(crate) struct TrialProgress<'a> {
+    job: &'a dyn Progress,
+    is_fit: bool,
+}
 
-impl Progress for OnlyCancels<'_> {
+impl Progress for TrialProgress<'_> {
+    fn finished(&self, what: &str) {
+        if self.is_fit {
+            self.job.finished(what);
+        }
+    }
+
     fn is_cancelled(&self) -> bool {
-        self.0.is_cancelled()
+        self.job.is_cancelled()
     }
 }
 
@@ -60,8 +70,8 @@ impl Trial<'_> {
     }
 
     /// Returns the observer of one of the trials.
-    pub(crate) fn only_cancels(&self) -> OnlyCancels<'_> {
-        OnlyCancels(self.progress)
+    pub(crate) fn observed(&self) -> TrialProgress<'_> {
+        TrialProgress { job: self.progress, is_fit: self.fit.is_some() }
     }
 
     /// Returns the trial of several horizons. With the horizon, an allowance is given for that one
@@ -77,7 +87,7 @@ impl Trial<'_> {
     ///
     /// As [`Job::run`].
     pub(crate) fn run(&self, windows: MemoryRuns) -> Result<Answer> {
-        Ok(self.job(windows)?.run(&self.only_cancels())?)
+        Ok(self.job(windows)?.run(&self.observed())?)
     }
 
     /// Reads windows.
@@ -86,7 +96,7 @@ impl Trial<'_> {
     ///
     /// As [`Job::read`].
     pub(crate) fn read(&self, windows: MemoryRuns) -> Result<Problem> {
-        Ok(self.job(windows)?.read(&self.only_cancels())?)
+        Ok(self.job(windows)?.read(&self.observed())?)
     }
 
     fn job(&self, windows: MemoryRuns) -> Result<Job> {

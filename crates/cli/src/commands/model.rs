@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::Silent;
 use reachtube::conform::Group;
 use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::page::{Assets, built_pages};
@@ -95,10 +94,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim_all(&pages.map(|folder| report_files::page_in(&folder)))?;
     let bar = Progress::of("making a model");
     let mut say = |choice: &Choice| {
-        output::note(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
+        bar.note(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
     };
     let journal = args.out.join(JOURNAL);
-    let built = build(&robot, torque, &choices, Some(&journal), &mut say, &Silent);
+    let built = build(&robot, torque, &choices, Some(&journal), &mut say, &bar);
     drop(bar);
     let built = built.inspect_err(|_| {
         // A model that was made says it among its findings.

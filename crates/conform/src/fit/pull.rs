@@ -7,9 +7,8 @@ use crate::fit::evaluation::FitTask;
 use crate::fit::group::Group;
 use crate::fit::parameters::Parameters;
 use crate::fit::record::{PullCost, UnseenMotion};
-use crate::fit::search::SearchEffort;
+use crate::fit::search::{SearchEffort, Wanted};
 use crate::fit::unseen::Unseen;
-use crate::fit::working_set::Wanted;
 use crate::next_motion::allowance::Missing;
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::without_motion::LeftOut;
@@ -85,7 +84,8 @@ impl Folded {
 
     /// Drops one group after the other, as long as the fits without it carry over better. Returns
     /// the groups that were dropped.
-    fn drop_groups(&mut self, folds: &[Fold], groups: &[Group]) -> Result<Vec<Group>> {
+    fn drop_groups(&mut self, folds: &[Fold], fit: &FitTask) -> Result<Vec<Group>> {
+        let (groups, progress) = (fit.parameters.groups(), fit.progress);
         let mut dropped = Vec::new();
         while dropped.len() + 1 < groups.len() {
             let left = groups.iter().filter(|group| !dropped.contains(*group));
@@ -100,7 +100,11 @@ impl Folded {
             let best = tried
                 .into_iter()
                 .reduce(|best, next| if next.1.mean.is_less(&best.1.mean) { next } else { best });
-            match best.filter(|(_, best)| best.mean.is_less(&self.mean)) {
+            let best = best.filter(|(_, best)| best.mean.is_less(&self.mean));
+            let words = best.as_ref().map_or("none", |(group, _)| group.name());
+            let fits = left.len() * folds.len();
+            progress.finished(&format!("{fits} fits without a group each: {words} is dropped"));
+            match best {
                 Some((group, best)) => {
                     dropped.push(group);
                     *self = best;
@@ -146,6 +150,7 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
     let mut numbers = vec![fit.parameters.start(); folds.len()];
     for pull in pulls {
         let folded = Folded::new(&folds, &numbers, pull, &[])?;
+        fit.progress.finished(&folded.mean.in_words(folds.len()));
         tried.push(folded.mean.clone());
         if best.as_ref().is_some_and(|best| !folded.mean.is_less(&best.mean)) {
             break;
@@ -156,7 +161,7 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
     let mut best = best.unwrap_or_default();
     let dropped = match given {
         Some(_) => Vec::new(),
-        None => best.drop_groups(&folds, &fit.parameters.groups())?,
+        None => best.drop_groups(&folds, fit)?,
     };
     let Folded { mean: PullCost { pull, .. }, left_out, missing, .. } = best;
     let missing = missing.into_iter().collect();
@@ -168,7 +173,7 @@ impl<'a> Fold<'a> {
         let own = FitTask { limits: limits.clone(), ..fit.clone() };
         let unseen = Unseen { whole: FitTask { stride: 1, ..own.clone() }, motion };
         let (start, tracks) = (own.parameters.start(), own.tracks(Some(motion)));
-        let start_cost = own.smallest(&own.model(&start, &tracks, None)?, &tracks)?.cost;
+        let start_cost = own.smallest(&own.model(&start, &tracks)?, &tracks)?.cost;
         Ok(Self { own, unseen, start_cost })
     }
 

@@ -133,6 +133,15 @@ impl PullCost {
         Self { pull, cost, grown_cost: mean_of(left_out, |left| left.grown_cost) }
     }
 
+    /// Says what the fits without each of some motions gave.
+    pub(crate) fn in_words(&self, motions: usize) -> String {
+        let cost = match self.grown_cost {
+            Some(cost) => format!("the sets that enclose the motion left out cost {cost:.4}"),
+            None => "no sets enclose each motion left out".into(),
+        };
+        format!("{motions} fits with the pull {}: {cost}", self.pull)
+    }
+
     /// Returns whether the grown sets cost less than for another weight. If no factor suffices for
     /// either, the sets of all motions are compared.
     pub(crate) fn is_less(&self, other: &Self) -> bool {
