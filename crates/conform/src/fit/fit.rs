@@ -13,7 +13,8 @@ use crate::fit::group::{FitSettings, Group};
 use crate::fit::parameters::{FreeParameter, Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fit::search::{FoundNumbers, SearchEffort, Wanted};
+use crate::fit::search::{FoundNumbers, SearchEffort};
+use crate::fit::working_set::Wanted;
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::nominal::input_error::InputError;
@@ -131,7 +132,7 @@ fn speeds_of_friction(problem: &Problem, steering: &Problem, groups: &[Group]) -
 fn search(fit: &FitTask, choice: &PullChoice) -> Result<FoundNumbers> {
     let groups = choice.groups(fit.parameters);
     let (start, tracks) = (fit.parameters.start(), fit.tracks(None));
-    let pull = choice.pull * fit.smallest(&fit.model(&start, &tracks)?, &tracks)?.cost;
+    let pull = choice.pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
     let wanted = |more: &[Group], effort| {
         let held = [&choice.dropped[..], more].concat();
         Wanted { left_out: None, pull, held, effort }
@@ -198,8 +199,8 @@ impl Problem {
 fn smallest(problem: &Problem) -> Result<Smallest> {
     let program = Program::of_problem(problem)?;
     let sets = program.repaired(&program.solve()?.sets);
-    let (cost, cost_by_time) = (program.cost_in_steps(&sets), program.cost(&sets));
-    Ok(Smallest { sets, cost, cost_by_time, deciding: Vec::new() })
+    let cost = program.cost_in_steps(&sets);
+    Ok(Smallest { cost, cost_by_time: program.cost(&sets), sets })
 }
 
 /// The cost of a linear model's calibrated sets, where they are to be calibrated and can be.

@@ -7,8 +7,9 @@ use crate::fit::evaluation::FitTask;
 use crate::fit::group::Group;
 use crate::fit::parameters::Parameters;
 use crate::fit::record::{PullCost, UnseenMotion};
-use crate::fit::search::{SearchEffort, Wanted};
+use crate::fit::search::SearchEffort;
 use crate::fit::unseen::Unseen;
+use crate::fit::working_set::Wanted;
 use crate::next_motion::allowance::Missing;
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::without_motion::LeftOut;
@@ -173,7 +174,7 @@ impl<'a> Fold<'a> {
         let own = FitTask { limits: limits.clone(), ..fit.clone() };
         let unseen = Unseen { whole: FitTask { stride: 1, ..own.clone() }, motion };
         let (start, tracks) = (own.parameters.start(), own.tracks(Some(motion)));
-        let start_cost = own.smallest(&own.model(&start, &tracks)?, &tracks)?.cost;
+        let start_cost = own.smallest(&own.model(&start, &tracks, None)?, &tracks)?.cost;
         Ok(Self { own, unseen, start_cost })
     }
 

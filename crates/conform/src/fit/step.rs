@@ -26,12 +26,14 @@ use crate::program::solver::{Triplets, solve_cone};
 /// A row counts as violated beyond this part of the largest row.
 const TOLERANCE: f64 = 1e-7;
 
-/// Windows of the horizon at most; each adds its worst violated row. The time of the solver grows
-/// with the rows, and more rounds of fewer rows take less time.
-const WINDOWS: usize = 6;
+/// Windows of the horizon at most; each adds its worst violated row.
+const WINDOWS: usize = 24;
 
 /// Samples of a window at least.
 const SAMPLES: usize = 4;
+
+/// Tracks that the first rows are taken from at most.
+const FIRST_TRACKS: usize = 4;
 
 /// Rounds of row generation at most.
 const ROUNDS: usize = 25;
@@ -92,15 +94,15 @@ pub(crate) struct StepSolution {
 }
 
 impl StepProgram<'_> {
-    /// Solves the step by row generation. `rows` are the first rows, or none, and become the rows
-    /// that nearly decide the answer.
+    /// Solves the step by row generation. `rows` are the first rows, and become the rows that
+    /// nearly decide the answer.
     ///
     /// # Errors
     ///
     /// [`Error::Program`](crate::Error::Program).
     pub(crate) fn solve(&self, rows: &mut Vec<StepRow>) -> Result<StepSolution> {
         if rows.is_empty() {
-            rows.extend(&self.smallest.deciding);
+            rows.extend(self.first_rows());
         }
         let (mut unknowns, mut cost) = self.solve_rows(rows)?;
         let mut reach = self.reach_of(&unknowns);
@@ -144,6 +146,20 @@ impl StepProgram<'_> {
     fn moved(&self, unknowns: &[f64]) -> Vec<f64> {
         let pairs = self.numbers_of(unknowns).into_iter().zip(self.numbers);
         pairs.map(|(new, here)| new - here).collect()
+    }
+
+    fn first_rows(&self) -> Vec<StepRow> {
+        let mut rows = Vec::new();
+        let stride = self.tracks.len().div_ceil(FIRST_TRACKS).max(1);
+        for &t in self.tracks.iter().step_by(stride) {
+            let samples = self.samples(t);
+            for k in (0..samples).step_by((samples / 4).max(1)) {
+                let states = self.fit.settings.states.rows(2 * self.fit.joints());
+                let of_sample = (0..states).flat_map(|i| Side::BOTH.map(|side| (t, k, i, side)));
+                rows.extend(of_sample);
+            }
+        }
+        rows
     }
 
     fn samples(&self, track: usize) -> usize {
