@@ -75,6 +75,8 @@ class HorizonWidths:
     """Half the width of each joint's set by its displacement; empty if no sets were found."""
     reason: str | None
     """Why no sets were found; ``None`` if they were."""
+    with_fit: bool
+    """Whether a fit was tried."""
 
 
 @dataclass(frozen=True)
@@ -147,7 +149,7 @@ class BuiltModel(Record):
 
         def widths(row: dict[str, Any]) -> HorizonWidths:
             ratios = (float("inf") if ratio is None else float(ratio) for ratio in row["ratios"])
-            return HorizonWidths(row["horizon"], tuple(ratios), row["reason"])
+            return HorizonWidths(row["horizon"], tuple(ratios), row["reason"], row["with_fit"])
 
         return [widths(row) for row in self._answer["horizons"]]
 

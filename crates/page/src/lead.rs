@@ -125,12 +125,16 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     series.push(line(vec![(horizon, 0.0), (horizon, highest)], CHOSEN));
     series.push(line(own.clone(), MAIN));
     series.push(Series { points: own.clone(), dots: true, colour: MAIN });
+    let first = built.horizons.iter().find(|widths| widths.with_fit);
+    let without_fit = first.map_or_else(String::new, |first| {
+        format!(" Horizons below {} s were tried without the fit.", first.horizon)
+    });
     let caption = format!(
         "How wide the sets are beside the motion, by horizon: {name} (blue), whose set is the \
          widest at {horizon} s (vertical line), and the other joints (grey). Up to the red line, \
-         {:.0} %, sets are useful. Other horizons were tried on up to 200 windows. The ratio may \
-         be compared across horizons; the cost may not: it adds rad to rad/s and grows with the \
-         length of the motions, so it is compared only within one data set.",
+         {:.0} %, sets are useful. Other horizons were tried on up to 200 windows.{without_fit} \
+         The ratio may be compared across horizons; the cost may not: it adds rad to rad/s and \
+         grows with the length of the motions, so it is compared only within one data set.",
         100.0 * most
     );
     let chart = Chart {

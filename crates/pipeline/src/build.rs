@@ -1,5 +1,6 @@
 use std::path::Path;
 
+use reachtube_conform::plausibility::JointWidth;
 use reachtube_conform::result::Severity;
 use reachtube_conform::settings::Equations;
 use reachtube_conform::{Answer, Finding, FitSettings, Progress};
@@ -181,13 +182,16 @@ fn sets(
     chooser.choices.largest_growth.get_or_insert(LARGEST_GROWTH);
     chooser.choices.largest_outside.get_or_insert(LARGEST_OUTSIDE);
     let mut horizons = choose_equations(chooser, trial, recordings, largest)?;
-    choose_fit(chooser, trial, longest(&horizons, largest).horizon);
-    if trial.fit.is_some() && chooser.choices.horizon.is_none() {
-        let shorter = longest(&horizons, largest).horizon;
-        horizons.retain(|widths| widths.horizon <= shorter);
-        horizons.extend(try_longer(trial, recordings, shorter, largest)?);
+    let given = chooser.choices.horizon;
+    let unfitted = given.unwrap_or_else(|| longest(&horizons, largest).horizon);
+    choose_fit(chooser, trial, unfitted);
+    if trial.fit.is_some() {
+        horizons.retain(|widths| widths.horizon <= unfitted);
+        if given.is_none() {
+            horizons.extend(try_longer(trial, recordings, unfitted, largest)?);
+        }
     }
-    let (found, horizon, reason) = match chooser.choices.horizon {
+    let (found, horizon, reason) = match given {
         Some(horizon) => {
             let found = Widened::new(trial, recordings, horizon)?;
             (found, horizon, "given".to_string())
@@ -198,6 +202,14 @@ fn sets(
             (found, horizon, reason)
         }
     };
+    if trial.fit.is_some() {
+        horizons.retain(|tried| tried.with_fit || tried.horizon <= horizon);
+        if let Some(own) = horizons.iter_mut().find(|tried| tried.horizon == horizon) {
+            let joints = found.answer.found.usefulness.joints.iter();
+            own.ratios = joints.map(JointWidth::ratio).collect();
+            own.with_fit = true;
+        }
+    }
     chooser.choose("horizon", format!("{horizon} s"), reason);
     chooser.choices.horizon = Some(horizon);
     chooser.choose("allowance", found.words(), &found.reason);
@@ -205,14 +217,13 @@ fn sets(
     Ok((found, horizons))
 }
 
-/// Chooses what is fitted. A fit makes sets narrower and takes long, so that horizons up to
-/// `without`, whose sets are narrow without it, are not tried again.
-fn choose_fit(chooser: &mut Chooser, trial: &mut Trial, without: f64) {
+/// Chooses what is fitted. A fit takes long, so that horizons up to `unfitted` \[s\], the longest
+/// that suits the sets without a fit, are not tried again.
+fn choose_fit(chooser: &mut Chooser, trial: &mut Trial, unfitted: f64) {
     let groups = chooser.choices.fit.clone().unwrap_or_default();
-    let reason = match (groups.is_empty(), chooser.choices.horizon) {
-        (true, _) => "a fit makes sets smaller, but takes minutes".into(),
-        (false, Some(_)) => "given; other horizons were tried without it".into(),
-        (false, None) => format!("given; horizons up to {without} s were tried without it"),
+    let reason = match groups.is_empty() {
+        true => "a fit makes sets smaller, but takes minutes".into(),
+        false => format!("given; horizons up to {unfitted} s were tried without it"),
     };
     let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
     let value = if names.is_empty() { "nothing".into() } else { names.join(", ") };

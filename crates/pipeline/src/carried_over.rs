@@ -110,7 +110,8 @@ impl Trial<'_> {
                         problem = Some(trial.read(recordings.cut(horizon, usize::MAX)?)?);
                     }
                     let problem = problem.as_ref().expect("it was read");
-                    carry_over(problem, &motion, fit.as_ref(), shape, &trial.observed())
+                    let observer = trial.observer(Some(&motion));
+                    carry_over(problem, &motion, fit.as_ref(), shape, &observer)
                         .map_err(Error::from)
                 })?;
                 *unseen = Unseen { left_out, factor };

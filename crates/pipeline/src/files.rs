@@ -29,6 +29,7 @@ impl Built {
             },
             "horizons": self.horizons.iter().map(|widths| json!({
                 "horizon": widths.horizon, "ratios": widths.ratios, "reason": widths.reason,
+                "with_fit": widths.with_fit,
             })).collect::<Vec<Value>>(),
             "choices": self.made,
             "claim": self.answer.model.proof.claim,

@@ -27,6 +27,8 @@ pub struct HorizonWidths {
     /// Why no sets were found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// Whether a fit was tried.
+    pub with_fit: bool,
 }
 
 impl HorizonWidths {
@@ -55,8 +57,9 @@ pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<H
     }
 }
 
-/// Finds how the sets grow over horizons longer than `than`, up to the one at which the worst
-/// joint's set is wider than its motion by the factor `most`.
+/// Finds how the sets grow over horizons longer than `than` \[s\], up to the one at which the
+/// worst joint's set is wider than its motion by the factor `most`. Recordings that count from
+/// their start are tried over all longer horizons.
 ///
 /// # Errors
 ///
@@ -108,7 +111,7 @@ pub(crate) fn try_horizon(
             Err(error) => Ok((Vec::new(), Some(error.to_string()))),
         })?;
     let ratios = ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect();
-    Ok(Some(HorizonWidths { horizon, ratios, reason }))
+    Ok(Some(HorizonWidths { horizon, ratios, reason, with_fit: trial.fit.is_some() }))
 }
 
 fn ratios(joints: &[JointWidth]) -> Vec<Option<f64>> {
@@ -133,14 +136,13 @@ mod tests {
             horizon,
             ratios: vec![0.1, ratio],
             reason: None,
+            with_fit: false,
         };
         let tried = [widths(0.05, 0.2), widths(0.1, 0.4), widths(0.2, 0.6), widths(0.3, 0.7)];
         assert_eq!(longest(&tried, 0.5).horizon, 0.1);
         assert_eq!(longest(&tried, 0.1).horizon, 0.05);
         assert_eq!(longest(&[widths(0.05, 3.0), widths(0.1, 2.0)], 0.5).horizon, 0.1);
-        assert_eq!(
-            HorizonWidths { horizon: 1.0, ratios: vec![], reason: None }.worst().1,
-            f64::INFINITY
-        );
+        let lost = HorizonWidths { ratios: vec![], ..widths(1.0, 0.0) };
+        assert_eq!(lost.worst().1, f64::INFINITY);
     }
 }

@@ -188,6 +188,46 @@ mod tests {
         assert!(stops > 8, "{stops} stops");
     }
 
+    /// Keeps the reports of a job.
+    #[derive(Default)]
+    struct Told(std::sync::Mutex<Vec<String>>);
+
+    impl Progress for Told {
+        fn finished(&self, what: &str) {
+            self.0.lock().unwrap().push(what.into());
+        }
+    }
+
+    #[test]
+    fn a_fit_is_tried_over_no_horizon_that_is_narrow_without_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let robot = logs(folder.path());
+        let built = |horizon: Option<f64>| {
+            let fit = Some(vec![reachtube_conform::Group::Viscous]);
+            let data = vec![folder.path().into()];
+            let given = Choices { data, fit, horizon, ..Choices::default() };
+            let told = Told::default();
+            let built = build(&robot, Torque::Motor, &given, None, &mut |_| (), &told).unwrap();
+            (built, told.0.into_inner().unwrap())
+        };
+        let fits = |told: &[String]| {
+            told.iter().filter(|what| what.starts_with("the weight of the pull")).count()
+        };
+        // One fit over all windows of the horizon that is given.
+        let (own, told) = built(Some(0.2));
+        assert_eq!(fits(&told), 1, "{told:?}");
+        let tried = |built: &Built| -> Vec<(f64, bool)> {
+            built.horizons.iter().map(|tried| (tried.horizon, tried.with_fit)).collect()
+        };
+        assert_eq!(tried(&own), [(0.05, false), (0.1, false), (0.2, true)]);
+        // Without a horizon, a fit for each longer one and one for the answer.
+        let (own, told) = built(None);
+        let (tried, chosen) = (tried(&own), own.choices.horizon.unwrap());
+        let longer = tried.iter().filter(|(horizon, with_fit)| *with_fit && *horizon != chosen);
+        assert_eq!(fits(&told), 1 + longer.count(), "{tried:?} {told:?}");
+        assert!(tried.iter().all(|(horizon, with_fit)| *with_fit == (*horizon >= chosen)));
+    }
+
     #[test]
     fn steps_are_done_once_and_belong_to_their_job() {
         let folder = tempfile::tempdir().unwrap();

@@ -122,7 +122,8 @@ impl Built {
         let shown = self.horizons.iter().take(shorter + BEYOND);
         let all = shown.map(|widths| {
             let (_, ratio) = widths.worst();
-            format!("{} s {}", widths.horizon, percent(ratio))
+            let fit = if widths.with_fit { " with fit" } else { "" };
+            format!("{} s {}{fit}", widths.horizon, percent(ratio))
         });
         let mut all: Vec<String> = all.collect();
         all.extend((all.len() < self.horizons.len()).then(|| "..".into()));

@@ -41,17 +41,21 @@ pub(crate) struct Trial<'a> {
     pub journal: &'a Journal<'a>,
 }
 
-/// An observer of a job of many trials, who cancels each of them and counts none. The
-/// parts of a fit, which takes long, are reported.
+/// An observer of a job of many trials, who cancels each of them and counts none. The parts of a
+/// fit, which takes long, are reported.
 pub(crate) struct TrialProgress<'a> {
     job: &'a dyn Progress,
     is_fit: bool,
+    /// The motion that is left out.
+    without: Option<&'a str>,
 }
 
 impl Progress for TrialProgress<'_> {
     fn finished(&self, what: &str) {
-        if self.is_fit {
-            self.job.finished(what);
+        match self.without {
+            Some(motion) if self.is_fit => self.job.finished(&format!("without {motion}: {what}")),
+            None if self.is_fit => self.job.finished(what),
+            _ => {}
         }
     }
 
@@ -69,9 +73,9 @@ impl Trial<'_> {
         format!("{equations:?} about {expansion:?}, {fit:?}, {allowance:?}, robot {robot}")
     }
 
-    /// Returns the observer of one of the trials.
-    pub(crate) fn observed(&self) -> TrialProgress<'_> {
-        TrialProgress { job: self.progress, is_fit: self.fit.is_some() }
+    /// Returns the observer of one of the trials; `without` names a motion that it does not see.
+    pub(crate) fn observer<'a>(&'a self, without: Option<&'a str>) -> TrialProgress<'a> {
+        TrialProgress { job: self.progress, is_fit: self.fit.is_some(), without }
     }
 
     /// Returns the trial of several horizons. With the horizon, an allowance is given for that one
@@ -87,7 +91,7 @@ impl Trial<'_> {
     ///
     /// As [`Job::run`].
     pub(crate) fn run(&self, windows: MemoryRuns) -> Result<Answer> {
-        Ok(self.job(windows)?.run(&self.observed())?)
+        Ok(self.job(windows)?.run(&self.observer(None))?)
     }
 
     /// Reads windows.
@@ -96,7 +100,7 @@ impl Trial<'_> {
     ///
     /// As [`Job::read`].
     pub(crate) fn read(&self, windows: MemoryRuns) -> Result<Problem> {
-        Ok(self.job(windows)?.read(&self.observed())?)
+        Ok(self.job(windows)?.read(&self.observer(None))?)
     }
 
     fn job(&self, windows: MemoryRuns) -> Result<Job> {

@@ -86,13 +86,13 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
         progress,
     };
     let choice = choose(&fit, &steering.limits_without_each(&data), settings.pull)?;
-    progress.finished(&format!("the weight of the pull is {}", choice.pull));
     if settings.pull.is_none() && !choice.carries_over() {
         let (record, setup) = (not_taken(&fit, choice, steering)?, problem.setup().clone());
         return Ok(Fitted { problem: problem.with_setup(setup), record, left_out: None });
     }
     let found = search(&fit, &choice)?;
-    progress.finished(&format!("the fit took {} steps", found.steps));
+    let steps = if found.steps == 1 { "step" } else { "steps" };
+    progress.finished(&format!("the fit took {} {steps}", found.steps));
     let with_numbers = |problem: &Problem| -> Result<Problem> {
         let temperatures = data.mean_temperatures();
         let own = Parameters::new(problem.setup(), &settings.groups, &speeds, temperatures);

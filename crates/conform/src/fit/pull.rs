@@ -102,9 +102,9 @@ impl Folded {
                 .into_iter()
                 .reduce(|best, next| if next.1.mean.is_less(&best.1.mean) { next } else { best });
             let best = best.filter(|(_, best)| best.mean.is_less(&self.mean));
-            let words = best.as_ref().map_or("none", |(group, _)| group.name());
+            let words = best.as_ref().map_or("no group", |(group, _)| group.name());
             let fits = left.len() * folds.len();
-            progress.finished(&format!("{fits} fits without a group each: {words} is dropped"));
+            progress.finished(&format!("{fits} fits, each without one group: {words} is dropped"));
             match best {
                 Some((group, best)) => {
                     dropped.push(group);
@@ -151,7 +151,9 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
     let mut numbers = vec![fit.parameters.start(); folds.len()];
     for pull in pulls {
         let folded = Folded::new(&folds, &numbers, pull, &[])?;
-        fit.progress.finished(&folded.mean.in_words(folds.len()));
+        if given.is_none() {
+            fit.progress.finished(&folded.mean.in_words(folds.len()));
+        }
         tried.push(folded.mean.clone());
         if best.as_ref().is_some_and(|best| !folded.mean.is_less(&best.mean)) {
             break;
@@ -165,6 +167,9 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
         None => best.drop_groups(&folds, fit)?,
     };
     let Folded { mean: PullCost { pull, .. }, left_out, missing, .. } = best;
+    if given.is_none() {
+        fit.progress.finished(&format!("the weight of the pull is {pull}"));
+    }
     let missing = missing.into_iter().collect();
     Ok(PullChoice { pull, left_out, missing, identified, tried, dropped })
 }

@@ -133,13 +133,15 @@ impl PullCost {
         Self { pull, cost, grown_cost: mean_of(left_out, |left| left.grown_cost) }
     }
 
-    /// Says what the fits without each of some motions gave.
+    /// Returns in words what fits gave, each of which has not seen one of some motions.
     pub(crate) fn in_words(&self, motions: usize) -> String {
         let cost = match self.grown_cost {
-            Some(cost) => format!("the sets that enclose the motion left out cost {cost:.4}"),
-            None => "no sets enclose each motion left out".into(),
+            Some(cost) => {
+                format!("sets that enclose the motion left out cost {cost:.4} on average")
+            }
+            None => "no factor of the sets encloses one of the motions left out".into(),
         };
-        format!("{motions} fits with the pull {}: {cost}", self.pull)
+        format!("{motions} fits with pull {}, each without one motion: {cost}", self.pull)
     }
 
     /// Returns whether the grown sets cost less than for another weight. If no factor suffices for

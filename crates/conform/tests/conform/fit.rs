@@ -9,7 +9,8 @@ use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::result::Code;
 use reachtube_conform::settings::{Centre, NominalStart};
 use reachtube_conform::{
-    FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, carry_over, fit,
+    Error, FitSettings, Group, Keep, Model, Problem, Progress, Settings, Setup, Silent, carry_over,
+    fit,
 };
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, RunSource, Torque};
@@ -104,6 +105,29 @@ pub(crate) const PLAIN: Truth = Truth {
     payload: 0.0,
     uneven: false,
 };
+
+/// Cancels a job, and keeps its reports.
+#[derive(Default)]
+struct Cancels(std::sync::Mutex<Vec<String>>);
+
+impl Progress for Cancels {
+    fn finished(&self, what: &str) {
+        self.0.lock().unwrap().push(what.into());
+    }
+
+    fn is_cancelled(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_fit_that_is_cancelled_ends_within_its_first_searches() {
+    let cancels = Cancels::default();
+    let settings = FitSettings { groups: vec![Group::Viscous], pull: None };
+    let refused = fit(&problem(PLAIN, 3, |_| ()), &settings, &cancels).unwrap_err();
+    assert!(matches!(refused, Error::Cancelled), "{refused}");
+    assert_eq!(cancels.0.into_inner().unwrap(), Vec::<String>::new());
+}
 
 /// The temperatures of both joints in the runs of a motion, °C, in no order of the runs.
 const HEAT: [[f64; 2]; RUNS] =
