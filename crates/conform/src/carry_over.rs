@@ -2,7 +2,7 @@
 
 use crate::data::problem::Problem;
 use crate::error::{Error, Result};
-use crate::fit::fit::fit;
+use crate::fit::fit::fitted_setup;
 use crate::fit::group::FitSettings;
 use crate::next_motion::allowance::factor_for;
 use crate::next_motion::left_out::leave_out;
@@ -42,7 +42,7 @@ pub fn carry_over(
     }
     let others = problem.with_suites(|suite| motions.of_suite(suite) != motion);
     let setup = match settings {
-        Some(settings) => fit(&others, settings, progress)?.problem.setup().clone(),
+        Some(settings) => fitted_setup(&others, settings, progress)?,
         None => problem.setup().clone(),
     };
     let problem = problem.with_setup(setup);

@@ -64,6 +64,8 @@ pub(crate) struct Smallest {
     pub cost: f64,
     /// The cost, an integral over time.
     pub cost_by_time: f64,
+    /// The rows that decide the sets.
+    pub deciding: Vec<StepRow>,
 }
 
 impl FitTask<'_> {
@@ -72,23 +74,14 @@ impl FitTask<'_> {
         self.weights.len() / 2
     }
 
-    /// Returns the model with these numbers and its nominal motions of `tracks`; `known` is one
-    /// whose E_k and R_k are the same.
+    /// Returns the model with these numbers and its nominal motions of `tracks`.
     ///
     /// # Errors
     ///
     /// A robot that is not physical, a model that is not linear.
-    pub(crate) fn model(
-        &self,
-        numbers: &[f64],
-        tracks: &[usize],
-        known: Option<&FitModel>,
-    ) -> Result<FitModel> {
+    pub(crate) fn model(&self, numbers: &[f64], tracks: &[usize]) -> Result<FitModel> {
         let nominal = self.nominal(numbers)?;
-        let coefficients = match known {
-            Some(model) => model.coefficients.clone(),
-            None => self.coefficients(&nominal),
-        };
+        let coefficients = self.coefficients(&nominal);
         let of = |&t: &usize| Ok((t, self.motion(&nominal, t, None)?));
         let found: Vec<(usize, Vec<f64>)> = tracks.par_iter().map(of).collect::<Result<_>>()?;
         let mut motions = vec![Vec::new(); self.data.tracks.len()];
@@ -202,8 +195,10 @@ impl FitTask<'_> {
         let solution = program.solve_from(rows)?;
         let sets = program.repaired(&solution.sets);
         program.keep_close(rows, &sets, CLOSE);
-        let cost = program.cost_in_steps(&sets);
-        Ok(Smallest { cost, cost_by_time: program.cost(&sets), sets })
+        let tight = program.tight_among(rows.iter().copied(), &sets).into_iter();
+        let deciding = tight.map(|row| (program.run(row) as usize, row.1, row.2, row.3)).collect();
+        let (cost, cost_by_time) = (program.cost_in_steps(&sets), program.cost(&sets));
+        Ok(Smallest { sets, cost, cost_by_time, deciding })
     }
 
     /// Returns what a row must reach in `model`: the deviation, less the known noise.
@@ -230,7 +225,7 @@ impl FitTask<'_> {
     pub(crate) fn whole_cost(&self, numbers: &[f64]) -> Result<Option<f64>> {
         let whole = Self { stride: 1, ..self.clone() };
         let tracks = whole.tracks(None);
-        match whole.model(numbers, &tracks, None) {
+        match whole.model(numbers, &tracks) {
             Ok(model) => Ok(Some(whole.smallest(&model, &tracks)?.cost_by_time)),
             Err(Error::RunsAway { .. }) => Ok(None),
             Err(error) => Err(error),

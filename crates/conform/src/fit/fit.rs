@@ -10,11 +10,10 @@ use crate::error::{Error, Result};
 use crate::fit::data::Data;
 use crate::fit::evaluation::{FitTask, Smallest};
 use crate::fit::group::{FitSettings, Group};
-use crate::fit::parameters::{FreeParameter, Parameters, Quantity};
+use crate::fit::parameters::{Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fit::search::{FoundNumbers, SearchEffort};
-use crate::fit::working_set::Wanted;
+use crate::fit::search::{FoundNumbers, SearchEffort, Wanted};
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::nominal::input_error::InputError;
@@ -54,64 +53,127 @@ pub struct Fitted {
 /// [`Error::Fold`] for warm-up where a fold has not kept the recordings; as [`Problem::run`] and
 /// [`conform`](crate::conform).
 pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -> Result<Fitted> {
-    refuse(problem, settings)?;
-    let kept = without_held_out(problem)?;
-    let fit_problem = kept.as_ref().unwrap_or(problem);
-    let linear;
-    let steering = match problem.dynamics().linear_system() {
-        Some(_) => fit_problem,
-        None => {
-            linear = fit_problem.with_setup(linear_setup(problem.setup())?);
-            &linear
-        }
-    };
-    let setup = steering.setup();
-    let data = Data::new(steering, settings.groups.contains(&Group::WarmUp))?;
-    if data.motions.len() < 2 {
-        return Err(Error::Fit(one_motion(kept.is_some())));
-    }
-    let speeds = speeds_of_friction(problem, steering, &settings.groups);
-    let parameters = Parameters::new(setup, &settings.groups, &speeds, data.mean_temperatures());
-    if parameters.len() == 0 {
-        return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
-    }
-    let envelopes: Vec<&Envelope> = steering.deviations()?.iter().map(|d| &d.envelope).collect();
-    let fit = FitTask {
-        parameters: &parameters,
-        data: &data,
-        stride: data.stride(),
-        weights: state_weights(&setup.settings.weights, &envelopes, steering.shape().states),
-        settings: &setup.settings,
-        limits: steering.limits(),
-        progress,
-    };
-    let choice = choose(&fit, &steering.limits_without_each(&data), settings.pull)?;
+    let basis = Basis::new(problem, settings)?;
+    let steering = basis.steering();
+    let parameters = basis.parameters(steering.setup())?;
+    let fit = basis.task(&parameters, progress)?;
+    let choice = choose(&fit, &steering.limits_without_each(&basis.data), settings.pull)?;
     if settings.pull.is_none() && !choice.carries_over() {
         let (record, setup) = (not_taken(&fit, choice, steering)?, problem.setup().clone());
         return Ok(Fitted { problem: problem.with_setup(setup), record, left_out: None });
     }
-    let found = search(&fit, &choice)?;
+    let found = search(&fit, choice.pull, &choice.dropped)?;
     let steps = if found.steps == 1 { "step" } else { "steps" };
     progress.finished(&format!("the fit took {} {steps}", found.steps));
-    let with_numbers = |problem: &Problem| -> Result<Problem> {
-        let temperatures = data.mean_temperatures();
-        let own = Parameters::new(problem.setup(), &settings.groups, &speeds, temperatures);
-        let mut setup = own.apply(&found.numbers)?;
-        if setup.settings.weights == Weights::Spread {
-            setup.settings.weights = Weights::Given(fit.weights.clone());
-        }
-        Ok(problem.with_setup(setup))
-    };
-    let fitted = with_numbers(steering)?;
-    let refused = |error| Error::Fit(format!("{error}; give a larger weight to the pull"));
-    fitted.robot().check_physical().map_err(refused)?;
+    let fitted = basis.with_numbers(&fit, steering, &found.numbers)?;
     let costs = [smallest(steering)?, smallest(&fitted)?];
     let left_out = Some(LeftOutMotions::from(&choice));
     let mut record = record(&fit, choice, Some(&found.numbers), costs)?;
     record.identified_calibrated_cost = calibrated_cost(problem);
     // The numbers go to the model that was asked for, with all motions.
-    let problem = if std::ptr::eq(steering, problem) { fitted } else { with_numbers(problem)? };
+    let problem = match basis.other {
+        None => fitted,
+        Some(_) => basis.with_numbers(&fit, problem, &found.numbers)?,
+    };
     Ok(Fitted { problem, record, left_out })
+}
+
+/// Returns the setup that [`fit`] finds. With a given pull it leaves no motion out, and makes no
+/// record.
+///
+/// # Errors
+///
+/// As [`fit`].
+pub(crate) fn fitted_setup(
+    problem: &Problem,
+    settings: &FitSettings,
+    progress: &dyn Progress,
+) -> Result<Setup> {
+    let Some(pull) = settings.pull else {
+        return Ok(fit(problem, settings, progress)?.problem.setup().clone());
+    };
+    let basis = Basis::new(problem, settings)?;
+    let parameters = basis.parameters(basis.steering().setup())?;
+    let fit = basis.task(&parameters, progress)?;
+    let found = search(&fit, pull, &[])?;
+    Ok(basis.with_numbers(&fit, problem, &found.numbers)?.setup().clone())
+}
+
+/// What a fit of a problem is based on.
+struct Basis<'a> {
+    given: &'a Problem,
+    groups: &'a [Group],
+    /// The problem that steers, where it is another: the linear model of the same robot, without
+    /// the motions that calibrate.
+    other: Option<Problem>,
+    data: Data,
+    /// The highest speed of the friction of each joint, as [`Parameters::new`] needs it.
+    speeds: Vec<f64>,
+}
+
+impl<'a> Basis<'a> {
+    fn new(given: &'a Problem, settings: &'a FitSettings) -> Result<Self> {
+        refuse(given, settings)?;
+        let groups = &*settings.groups;
+        let mut other = without_held_out(given)?;
+        let is_held_out = other.is_some();
+        if given.dynamics().linear_system().is_none() {
+            let linear = linear_setup(given.setup())?;
+            other = Some(other.as_ref().unwrap_or(given).with_setup(linear));
+        }
+        let steering = other.as_ref().unwrap_or(given);
+        let data = Data::new(steering, groups.contains(&Group::WarmUp))?;
+        if data.motions.len() < 2 {
+            return Err(Error::Fit(one_motion(is_held_out)));
+        }
+        let speeds = speeds_of_friction(given, steering, groups);
+        Ok(Self { given, groups, other, data, speeds })
+    }
+
+    fn steering(&self) -> &Problem {
+        self.other.as_ref().unwrap_or(self.given)
+    }
+
+    /// Returns the parameters of a setup's robot.
+    fn parameters<'b>(&self, setup: &'b Setup) -> Result<Parameters<'b>> {
+        let temperatures = self.data.mean_temperatures();
+        let parameters = Parameters::new(setup, self.groups, &self.speeds, temperatures);
+        if parameters.len() == 0 {
+            return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
+        }
+        Ok(parameters)
+    }
+
+    fn task<'b>(
+        &'b self,
+        parameters: &'b Parameters<'b>,
+        progress: &'b dyn Progress,
+    ) -> Result<FitTask<'b>> {
+        let (steering, data) = (self.steering(), &self.data);
+        let settings = steering.settings();
+        let envelopes: Vec<&Envelope> =
+            steering.deviations()?.iter().map(|own| &own.envelope).collect();
+        Ok(FitTask {
+            parameters,
+            data,
+            stride: data.stride(),
+            weights: state_weights(&settings.weights, &envelopes, steering.shape().states),
+            settings,
+            limits: steering.limits(),
+            progress,
+        })
+    }
+
+    /// Returns a problem whose model has the numbers that were found.
+    fn with_numbers(&self, fit: &FitTask, problem: &Problem, numbers: &[f64]) -> Result<Problem> {
+        let mut setup = self.parameters(problem.setup())?.apply(numbers)?;
+        let refused = |error| Error::Fit(format!("{error}; give a larger weight to the pull"));
+        setup.robot.check_physical().map_err(refused)?;
+        if setup.settings.weights == Weights::Spread {
+            setup.settings.weights = Weights::Given(fit.weights.clone());
+        }
+        Ok(problem.with_setup(setup))
+    }
 }
 
 /// Returns the highest recorded speed of each joint, rad/s; none for a linear model whose friction
@@ -124,28 +186,36 @@ fn speeds_of_friction(problem: &Problem, steering: &Problem, groups: &[Group]) -
     (0..joints).map(|joint| steering.highest_speed(joint)).collect()
 }
 
-/// Searches with the pull and the groups that were chosen; the pull is in parts of the identified
-/// model's cost.
+/// A kind of parameters, which all joints have.
+type Kind = std::mem::Discriminant<Quantity>;
+
+/// Searches with a pull, in parts of the identified model's cost, and without the groups that were
+/// dropped.
 ///
-/// The cost has more than one local optimum. One search moves all groups from the beginning, and
-/// one for each group first the others; the best answer counts.
-fn search(fit: &FitTask, choice: &PullChoice) -> Result<FoundNumbers> {
-    let groups = choice.groups(fit.parameters);
+/// The cost has more than one local optimum. One search moves all parameters from the beginning,
+/// and one for each kind of them first the others; the best answer counts.
+fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
+    let all = fit.parameters.except(dropped);
+    let kind = |p: usize| std::mem::discriminant(&fit.parameters.list[p].quantity);
+    let mut kinds: Vec<Kind> = Vec::new();
+    for kind in all.iter().map(|p| kind(*p)) {
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
     let (start, tracks) = (fit.parameters.start(), fit.tracks(None));
-    let pull = choice.pull * fit.smallest(&fit.model(&start, &tracks, None)?, &tracks)?.cost;
-    let wanted = |more: &[Group], effort| {
-        let held = [&choice.dropped[..], more].concat();
-        Wanted { left_out: None, pull, held, effort }
-    };
-    let of_held = |held: Option<Group>| {
+    let pull = pull * fit.smallest(&fit.model(&start, &tracks)?, &tracks)?.cost;
+    let wanted = |free, effort| Wanted { left_out: None, pull, free, effort };
+    let of_held = |held: Option<Kind>| {
+        let others = all.iter().copied().filter(|p| held != Some(kind(*p))).collect();
         let first = match held {
-            Some(group) => fit.search(&wanted(&[group], SearchEffort::START), &start)?.numbers,
+            Some(_) => fit.search(&wanted(others, SearchEffort::START), &start)?.numbers,
             None => start.clone(),
         };
-        fit.search(&wanted(&[], SearchEffort::START), &first)
+        fit.search(&wanted(all.clone(), SearchEffort::START), &first)
     };
-    let held = groups.iter().map(|group| Some(*group)).filter(|_| groups.len() > 1);
-    let starts: Vec<Option<Group>> = std::iter::once(None).chain(held).collect();
+    let held = kinds.iter().map(|kind| Some(*kind)).filter(|_| kinds.len() > 1);
+    let starts: Vec<Option<Kind>> = std::iter::once(None).chain(held).collect();
     let mut answers: Vec<Result<FoundNumbers>> = starts.into_par_iter().map(of_held).collect();
     let mut best = answers.remove(0)?;
     for other in answers.into_iter().flatten() {
@@ -153,7 +223,7 @@ fn search(fit: &FitTask, choice: &PullChoice) -> Result<FoundNumbers> {
             best = other;
         }
     }
-    let found = fit.search(&wanted(&[], SearchEffort::WHOLE), &best.numbers)?;
+    let found = fit.search(&wanted(all, SearchEffort::WHOLE), &best.numbers)?;
     Ok(FoundNumbers { steps: best.steps + found.steps, ..found })
 }
 
@@ -199,8 +269,8 @@ impl Problem {
 fn smallest(problem: &Problem) -> Result<Smallest> {
     let program = Program::of_problem(problem)?;
     let sets = program.repaired(&program.solve()?.sets);
-    let cost = program.cost_in_steps(&sets);
-    Ok(Smallest { cost, cost_by_time: program.cost(&sets), sets })
+    let (cost, cost_by_time) = (program.cost_in_steps(&sets), program.cost(&sets));
+    Ok(Smallest { sets, cost, cost_by_time, deciding: Vec::new() })
 }
 
 /// The cost of a linear model's calibrated sets, where they are to be calibrated and can be.
@@ -243,7 +313,7 @@ fn record(
         let wanted = Wanted {
             left_out: None,
             pull: choice.pull * identified.cost,
-            held: [&choice.dropped[..], &[*group]].concat(),
+            free: fit.parameters.except(&[&choice.dropped[..], &[*group]].concat()),
             effort: SearchEffort::QUICK,
         };
         let (start, without) = (fit.parameters.start(), fit.without(*group, &numbers));
@@ -274,7 +344,7 @@ fn record(
         identified_left_out: choice.identified,
         identified_calibrated_cost: None,
         pulls: choice.tried,
-        parameters: parameters_of(fit, &numbers, setup),
+        parameters: FittedParameter::of_fit(fit, &numbers, setup),
         torque: torque
             .map(|(j, (identified, fitted))| TorquePrediction { joint: j + 1, identified, fitted })
             .collect(),
@@ -293,42 +363,4 @@ impl FitTask<'_> {
         );
         kept.collect()
     }
-}
-
-fn coulomb_name(quadrants: [bool; 4]) -> &'static str {
-    match quadrants {
-        [true, false, false, false] => "Coulomb friction, driving forward",
-        [false, true, false, false] => "Coulomb friction, driving backward",
-        [false, false, true, false] => "Coulomb friction, braking backward",
-        [false, false, false, true] => "Coulomb friction, braking forward",
-        _ => "Coulomb friction",
-    }
-}
-
-fn parameters_of(fit: &FitTask, numbers: &[f64], setup: &Setup) -> Vec<FittedParameter> {
-    let of = |p: usize| {
-        let FreeParameter { quantity, joint, .. } = fit.parameters.list[p];
-        let kind = setup.robot.joints()[joint].kind;
-        let (identified, fitted, factor) = fit.parameters.values(p, numbers[p]);
-        let of_velocity =
-            |power| format!("{}/({}){power}", kind.force_unit(), kind.velocity_unit());
-        let by_temperature = fit.parameters.warms_by_temperature();
-        let (name, unit) = match quantity {
-            Quantity::MotorInertia => ("inertia at the motor", kind.inertia_unit().into()),
-            Quantity::Density => ("mass of the link", "kg".into()),
-            Quantity::Viscous => ("viscous friction", of_velocity("")),
-            Quantity::Cubic => ("cubic friction", of_velocity("³")),
-            Quantity::Coulomb(quadrants) => (coulomb_name(quadrants), kind.force_unit().into()),
-            Quantity::WarmUp if by_temperature => {
-                ("viscous friction per K", of_velocity("") + "/K")
-            }
-            Quantity::WarmUp => ("viscous friction per unit of ln(run)", of_velocity("")),
-            Quantity::WarmUpCoulomb => ("part of Coulomb friction per K", "1/K".into()),
-            Quantity::Payload => ("payload", "kg".into()),
-        };
-        let (group, joint) = (quantity.group(), joint + 1);
-        let (name, standard_error) = (name.into(), fit.parameters.standard_error(p));
-        FittedParameter { group, name, joint, unit, identified, standard_error, fitted, factor }
-    };
-    (0..numbers.len()).map(of).collect()
 }

@@ -20,7 +20,6 @@ pub(crate) mod search;
 pub(crate) mod slopes;
 pub(crate) mod step;
 pub(crate) mod unseen;
-pub(crate) mod working_set;
 
 pub use fit::Fitted;
 pub use record::{FitRecord, FittedParameter, GroupCost, PullCost, TorquePrediction, UnseenMotion};

@@ -129,6 +129,12 @@ impl<'a> Parameters<'a> {
         parameters
     }
 
+    /// Returns the parameters that are in none of the groups `held`.
+    pub(crate) fn except(&self, held: &[Group]) -> Vec<usize> {
+        let list = self.list.iter().enumerate();
+        list.filter(|(_, own)| !held.contains(&own.quantity.group())).map(|(p, _)| p).collect()
+    }
+
     /// Returns the numbers that a fit starts from: the identified values, but friction that rises.
     pub(crate) fn start(&self) -> Vec<f64> {
         let mut numbers = vec![0.0; self.len()];

@@ -7,9 +7,8 @@ use crate::fit::evaluation::FitTask;
 use crate::fit::group::Group;
 use crate::fit::parameters::Parameters;
 use crate::fit::record::{PullCost, UnseenMotion};
-use crate::fit::search::SearchEffort;
+use crate::fit::search::{SearchEffort, Wanted};
 use crate::fit::unseen::Unseen;
-use crate::fit::working_set::Wanted;
 use crate::next_motion::allowance::Missing;
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::without_motion::LeftOut;
@@ -179,7 +178,7 @@ impl<'a> Fold<'a> {
         let own = FitTask { limits: limits.clone(), ..fit.clone() };
         let unseen = Unseen { whole: FitTask { stride: 1, ..own.clone() }, motion };
         let (start, tracks) = (own.parameters.start(), own.tracks(Some(motion)));
-        let start_cost = own.smallest(&own.model(&start, &tracks, None)?, &tracks)?.cost;
+        let start_cost = own.smallest(&own.model(&start, &tracks)?, &tracks)?.cost;
         Ok(Self { own, unseen, start_cost })
     }
 
@@ -189,7 +188,7 @@ impl<'a> Fold<'a> {
         let wanted = Wanted {
             left_out: Some(self.unseen.motion),
             pull: pull * self.start_cost,
-            held: held.to_vec(),
+            free: self.own.parameters.except(held),
             effort: SearchEffort::QUICK,
         };
         // Without a group a nominal motion may run away until the others are fitted again.

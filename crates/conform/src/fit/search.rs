@@ -1,7 +1,6 @@
 use crate::error::{Error, Result};
 use crate::fit::evaluation::{FitModel, FitTask, Smallest, StepRow};
-use crate::fit::group::Group;
-use crate::fit::slopes::slopes;
+use crate::fit::slopes::Slopes;
 use crate::fit::step::StepProgram;
 use crate::program::program::RowIndex;
 
@@ -22,14 +21,15 @@ pub(crate) struct FoundNumbers {
     pub value: f64,
 }
 
-/// The parameters for which the sets of some tracks cost least, with a pull.
-pub(crate) struct Search<'a> {
-    pub fit: &'a FitTask<'a>,
-    pub tracks: Vec<usize>,
+/// What is searched for.
+#[derive(Debug, Clone)]
+pub(crate) struct Wanted {
+    /// The motion that is not looked at.
+    pub left_out: Option<usize>,
     /// Cost of a number's distance from 0.
     pub pull: f64,
-    /// Groups whose numbers stay as they are.
-    pub held: Vec<Group>,
+    /// The parameters that may move.
+    pub free: Vec<usize>,
     pub effort: SearchEffort,
 }
 
@@ -60,81 +60,137 @@ struct Point {
     smallest: Smallest,
 }
 
-impl Search<'_> {
-    /// Searches from `start`.
+/// A search over some recordings.
+struct Search<'a> {
+    fit: &'a FitTask<'a>,
+    wanted: &'a Wanted,
+    /// The recordings.
+    tracks: Vec<usize>,
+}
+
+/// What one step of a search hands on to the next.
+#[derive(Default)]
+struct Known {
+    trust: f64,
+    /// The recordings that steer.
+    chosen: Vec<usize>,
+    /// Rows that nearly decide a step, and the sets of a point.
+    rows: Vec<StepRow>,
+    own_rows: Vec<RowIndex>,
+}
+
+impl FitTask<'_> {
+    /// Searches the parameters for which the sets of all motions but one cost least, with a pull,
+    /// from `start`.
+    ///
+    /// Derivatives cost most, and few recordings decide the sets. Only the recordings that have
+    /// decided them, here or at a step that was not taken, have derivatives and steer a step; the
+    /// sets of all recordings decide whether it is taken.
     ///
     /// # Errors
     ///
     /// When the first program is not solved; [`Error::Cancelled`].
-    pub(crate) fn run(&self, start: &[f64]) -> Result<FoundNumbers> {
-        let (mut rows, mut own_rows) = (Vec::<StepRow>::new(), Vec::new());
-        let mut point = self.point(start.to_vec(), &mut own_rows)?;
-        let (mut trust, mut steps) = (FIRST_TRUST, 0);
-        'search: for _ in 0..self.effort.steps {
+    pub(crate) fn search(&self, wanted: &Wanted, start: &[f64]) -> Result<FoundNumbers> {
+        Search { fit: self, wanted, tracks: self.tracks(wanted.left_out) }.run(start)
+    }
+}
+
+impl Search<'_> {
+    fn run(&self, start: &[f64]) -> Result<FoundNumbers> {
+        let Wanted { free, effort, .. } = self.wanted;
+        let mut known = Known { trust: FIRST_TRUST, ..Known::default() };
+        let mut point = self.point(start.to_vec(), &mut known.own_rows)?;
+        let mut steps = 0;
+        while steps < effort.steps {
             self.fit.progress.go_on()?;
-            let at = (point.numbers.as_slice(), self.held.as_slice());
-            let slopes = slopes(self.fit, at, &self.tracks, &point.model, &point.smallest);
-            let slopes = match slopes {
-                Err(Error::RunsAway { .. }) => break 'search,
-                slopes => slopes?,
-            };
-            let program = self.fit.program(&point.model, &self.tracks);
-            loop {
-                let step = StepProgram {
-                    fit: self.fit,
-                    model: &point.model,
-                    slopes: &slopes,
-                    program: &program,
-                    tracks: &self.tracks,
-                    numbers: &point.numbers,
-                    smallest: &point.smallest,
-                    trust,
-                    held: &self.held,
-                    pull: self.pull,
-                };
-                let Ok(answer) = step.solve(&mut rows) else { break 'search };
-                let promised = self.value(&point) - answer.cost;
-                if promised < self.effort.settled * point.smallest.cost {
-                    break 'search;
-                }
-                let moved = largest_move(&answer.numbers, &point.numbers);
-                let next = self.point(answer.numbers, &mut own_rows).ok();
-                let gained =
-                    next.as_ref().map_or(-1.0, |next| self.value(&point) - self.value(next));
-                if let Some(next) = next.filter(|_| gained > 0.1 * promised) {
-                    if gained > 0.7 * promised && moved > 0.9 * trust {
-                        trust *= 2.0;
-                    } else if gained < 0.3 * promised {
-                        trust = 0.5 * moved;
-                    }
-                    (point, steps) = (next, steps + 1);
-                    if gained < self.effort.settled * point.smallest.cost {
-                        break 'search;
-                    }
-                    break;
-                }
-                trust = 0.35 * moved.min(trust);
-                if trust < LEAST_TRUST {
-                    break 'search;
-                }
+            add_deciding(&point, &mut known.chosen);
+            let at = (point.numbers.as_slice(), free.as_slice());
+            let mut slopes = Slopes::new(self.fit, at, &point.model, &point.smallest)?;
+            match slopes.add(&known.chosen) {
+                Err(Error::RunsAway { .. }) => break,
+                added => added?,
+            }
+            let Some(next) = self.step(&point, &mut slopes, &mut known) else { break };
+            let gained = self.value(&point) - self.value(&next);
+            (point, steps) = (next, steps + 1);
+            if gained < effort.settled * point.smallest.cost {
+                break;
             }
         }
         Ok(FoundNumbers { value: self.value(&point), numbers: point.numbers, steps })
     }
 
+    /// Takes a step from `point`, in a trust region that is small enough for the derivatives;
+    /// `None` if no step gains enough.
+    fn step(&self, point: &Point, slopes: &mut Slopes, known: &mut Known) -> Option<Point> {
+        let Wanted { pull, free, effort, .. } = self.wanted;
+        let program = self.fit.program(&point.model, &self.tracks);
+        while known.trust >= LEAST_TRUST {
+            let step = StepProgram {
+                fit: self.fit,
+                model: &point.model,
+                slopes: &slopes.list,
+                program: &program,
+                tracks: &known.chosen,
+                numbers: &point.numbers,
+                smallest: &point.smallest,
+                trust: known.trust,
+                free,
+                pull: *pull,
+            };
+            let answer = step.solve(&mut known.rows).ok()?;
+            let promised = self.value(point) - answer.cost;
+            if promised < effort.settled * point.smallest.cost {
+                return None;
+            }
+            let moved = largest_move(&answer.numbers, &point.numbers);
+            if let Ok(next) = self.point(answer.numbers, &mut known.own_rows) {
+                let gained = self.value(point) - self.value(&next);
+                if gained > 0.1 * promised {
+                    if gained > 0.7 * promised && moved > 0.9 * known.trust {
+                        known.trust *= 2.0;
+                    } else if gained < 0.3 * promised {
+                        known.trust = 0.5 * moved;
+                    }
+                    return Some(next);
+                }
+                // Recordings may decide there that did not steer the step.
+                let count = known.chosen.len();
+                let added = add_deciding(&next, &mut known.chosen);
+                if !added.is_empty() && slopes.add(&added).is_ok() {
+                    continue;
+                }
+                known.chosen.truncate(count);
+            }
+            known.trust = 0.35 * moved.min(known.trust);
+        }
+        None
+    }
+
     fn point(&self, numbers: Vec<f64>, rows: &mut Vec<RowIndex>) -> Result<Point> {
-        if self.effort.is_physical {
+        if self.wanted.effort.is_physical {
             self.fit.parameters.apply(&numbers)?.robot.check_physical()?;
         }
-        let model = self.fit.model(&numbers, &self.tracks, None)?;
+        let model = self.fit.model(&numbers, &self.tracks)?;
         let smallest = self.fit.smallest_from(&model, &self.tracks, rows)?;
         Ok(Point { numbers, model, smallest })
     }
 
     /// The cost with the pull.
     fn value(&self, point: &Point) -> f64 {
-        point.smallest.cost + self.pull * point.numbers.iter().map(|x| x.abs()).sum::<f64>()
+        let sizes = point.numbers.iter().map(|x| x.abs());
+        point.smallest.cost + self.wanted.pull * sizes.sum::<f64>()
     }
+}
+
+/// Adds the recordings that decide the sets at a point to `chosen`. Returns the new ones.
+fn add_deciding(point: &Point, chosen: &mut Vec<usize>) -> Vec<usize> {
+    let mut added: Vec<usize> = point.smallest.deciding.iter().map(|row| row.0).collect();
+    added.sort_unstable();
+    added.dedup();
+    added.retain(|track| !chosen.contains(track));
+    chosen.extend(&added);
+    added
 }
 
 fn largest_move(a: &[f64], b: &[f64]) -> f64 {

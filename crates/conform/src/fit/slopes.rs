@@ -6,7 +6,6 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::fit::evaluation::{FitModel, FitTask, NominalModel, Smallest};
-use crate::fit::group::Group;
 use crate::nominal::loads::LoadsNear;
 use crate::sets::UncertaintySets;
 
@@ -21,50 +20,73 @@ pub(crate) struct Slope {
     pub reach: Option<Vec<Vec<[f64; 2]>>>,
 }
 
-/// Returns the derivatives for `tracks` at `numbers`, where the model is `model` and its smallest
-/// sets are `smallest`, one for each parameter; none for parameters of the groups `held`.
-///
-/// # Errors
-///
-/// As [`FitTask::model`].
-pub(crate) fn slopes(
-    fit: &FitTask,
-    (numbers, held): (&[f64], &[Group]),
-    tracks: &[usize],
-    model: &FitModel,
-    smallest: &Smallest,
-) -> Result<Vec<Slope>> {
-    let of_parameter = |p: usize| -> Result<Option<Moved>> {
-        let is_held = held.contains(&fit.parameters.list[p].quantity.group());
-        (!is_held).then(|| Moved::new(fit, numbers, p, (model, smallest))).transpose()
-    };
-    let count = fit.parameters.len();
-    let moved = (0..count).into_par_iter().map(of_parameter).collect::<Result<Vec<_>>>()?;
-    let here = fit.nominal(numbers)?;
-    let has_loads = fit.parameters.needs_loads();
-    // All parameters share the loads of gravity along a track, to first order.
-    let of_track = |&t: &usize| -> Result<Vec<Vec<f64>>> {
-        let along = |motion: Vec<f64>| LoadsNear::along(&here.setup.robot, &motion);
-        let loads = has_loads.then(|| fit.motion(&here, t, None).map(along)).transpose()?;
-        let difference = |Moved { nominal, step, .. }: &Moved| {
-            let rows = fit.rows_of(&fit.motion(nominal, t, loads.as_ref())?).into_iter();
-            Ok(rows.zip(&model.motions[t]).map(|(x, y)| (x - y) / step).collect())
+/// The derivatives at some numbers, for the tracks that were added.
+pub(crate) struct Slopes<'a> {
+    fit: &'a FitTask<'a>,
+    /// The model there, and its nominal motions.
+    here: (NominalModel, &'a FitModel),
+    /// One for each parameter; `None` for one that is held.
+    moved: Vec<Option<Moved>>,
+    /// One for each parameter; without motions for one that is held.
+    pub list: Vec<Slope>,
+}
+
+impl<'a> Slopes<'a> {
+    /// Prepares the derivatives at `numbers`, where the model is `model` and its smallest sets are
+    /// `smallest`, for the parameters `free`.
+    ///
+    /// # Errors
+    ///
+    /// As [`FitTask::model`].
+    pub(crate) fn new(
+        fit: &'a FitTask<'a>,
+        (numbers, free): (&[f64], &[usize]),
+        model: &'a FitModel,
+        smallest: &Smallest,
+    ) -> Result<Self> {
+        let of_parameter = |p: usize| {
+            if !free.contains(&p) {
+                return Ok((None, None));
+            }
+            let moved = Moved::new(fit, numbers, p)?;
+            let changes = fit.parameters.changes_model(p);
+            let reach = changes.then(|| moved.reach(fit, model, smallest));
+            Ok((Some(moved), reach))
         };
-        moved.iter().flatten().map(difference).collect()
-    };
-    let mut of_tracks: Vec<Vec<Vec<f64>>> =
-        tracks.par_iter().map(of_track).collect::<Result<_>>()?;
-    let mut free = 0;
-    let slope = |moved: Option<Moved>| {
-        let mut motions = vec![Vec::new(); fit.data.tracks.len()];
-        let Some(Moved { reach, .. }) = moved else { return Slope { motions, reach: None } };
-        for (&t, own) in tracks.iter().zip(&mut of_tracks) {
-            motions[t] = std::mem::take(&mut own[free]);
+        let all = (0..fit.parameters.len()).into_par_iter().map(of_parameter);
+        let (moved, reach): (Vec<_>, Vec<_>) = all.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+        let none = || vec![Vec::new(); fit.data.tracks.len()];
+        let list = reach.into_iter().map(|reach| Slope { motions: none(), reach }).collect();
+        Ok(Self { fit, here: (fit.nominal(numbers)?, model), moved, list })
+    }
+
+    /// Adds the derivatives of the nominal motions of `tracks`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::RunsAway`](crate::Error::RunsAway).
+    pub(crate) fn add(&mut self, tracks: &[usize]) -> Result<()> {
+        let Self { fit, here: (here, model), moved, list } = self;
+        let has_loads = fit.parameters.needs_loads();
+        // All parameters share the loads of gravity along a track, to first order.
+        let of_track = |&t: &usize| -> Result<Vec<Vec<f64>>> {
+            let along = |motion: Vec<f64>| LoadsNear::along(&here.setup.robot, &motion);
+            let loads = has_loads.then(|| fit.motion(here, t, None).map(along)).transpose()?;
+            let difference = |moved: &Option<Moved>| {
+                let Some(Moved { nominal, step }) = moved else { return Ok(Vec::new()) };
+                let rows = fit.rows_of(&fit.motion(nominal, t, loads.as_ref())?).into_iter();
+                Ok(rows.zip(&model.motions[t]).map(|(x, y)| (x - y) / step).collect())
+            };
+            moved.iter().map(difference).collect()
+        };
+        let of_tracks = tracks.par_iter().map(of_track).collect::<Result<Vec<_>>>()?;
+        for (&t, of_parameters) in tracks.iter().zip(of_tracks) {
+            for (slope, motion) in list.iter_mut().zip(of_parameters) {
+                slope.motions[t] = motion;
+            }
         }
-        free += 1;
-        Slope { motions, reach }
-    };
-    Ok(moved.into_iter().map(slope).collect())
+        Ok(())
+    }
 }
 
 /// A model with one number moved.
@@ -72,34 +94,29 @@ struct Moved {
     nominal: NominalModel,
     /// How far the number was moved.
     step: f64,
-    /// As [`Slope`] has it.
-    reach: Option<Vec<Vec<[f64; 2]>>>,
 }
 
 impl Moved {
-    /// Moves number `p` of the model `model`, whose smallest sets are `smallest`.
-    fn new(
-        fit: &FitTask,
-        numbers: &[f64],
-        p: usize,
-        (model, smallest): (&FitModel, &Smallest),
-    ) -> Result<Self> {
+    fn new(fit: &FitTask, numbers: &[f64], p: usize) -> Result<Self> {
         let mut moved = numbers.to_vec();
         let up = numbers[p] + DIFFERENCE <= fit.parameters.list[p].bounds[1];
         let step = if up { DIFFERENCE } else { -DIFFERENCE };
         moved[p] += step;
-        let nominal = fit.nominal(&moved)?;
+        Ok(Self { nominal: fit.nominal(&moved)?, step })
+    }
+
+    /// Returns the slopes of E_k c and R_k r, as [`Slope`] has them.
+    fn reach(&self, fit: &FitTask, model: &FitModel, smallest: &Smallest) -> Vec<Vec<[f64; 2]>> {
         let UncertaintySets { initial_set, input_set, .. } = &smallest.sets;
         let centre = [&*initial_set.centre, &input_set.centre].concat();
         let radius = [&*initial_set.radius, &input_set.radius].concat();
         let width = 2 * centre.len();
         let rows = |(other, here): (&Arc<Vec<f64>>, &Arc<Vec<f64>>)| {
             let rows = other.chunks_exact(width).zip(here.chunks_exact(width));
-            rows.map(|(other, here)| reach_slope(other, here, &centre, &radius, step)).collect()
+            rows.map(|(other, here)| reach_slope(other, here, &centre, &radius, self.step))
+                .collect()
         };
-        let changed = fit.parameters.changes_model(p).then(|| fit.coefficients(&nominal));
-        let reach = changed.map(|other| other.iter().zip(&model.coefficients).map(rows).collect());
-        Ok(Self { nominal, step, reach })
+        fit.coefficients(&self.nominal).iter().zip(&model.coefficients).map(rows).collect()
     }
 }
 

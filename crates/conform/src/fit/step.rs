@@ -16,7 +16,6 @@ use rayon::prelude::*;
 use crate::data::side::Side;
 use crate::error::Result;
 use crate::fit::evaluation::{FitModel, FitTask, Smallest, StepRow};
-use crate::fit::group::Group;
 use crate::fit::slopes::Slope;
 use crate::program::dot::dot;
 use crate::program::layout::Layout;
@@ -26,14 +25,12 @@ use crate::program::solver::{Triplets, solve_cone};
 /// A row counts as violated beyond this part of the largest row.
 const TOLERANCE: f64 = 1e-7;
 
-/// Windows of the horizon at most; each adds its worst violated row.
-const WINDOWS: usize = 24;
+/// Windows of the horizon at most; each adds its worst violated row. The time of the solver grows
+/// with the rows, and more rounds of fewer rows take less time.
+const WINDOWS: usize = 6;
 
 /// Samples of a window at least.
 const SAMPLES: usize = 4;
-
-/// Tracks that the first rows are taken from at most.
-const FIRST_TRACKS: usize = 4;
 
 /// Rounds of row generation at most.
 const ROUNDS: usize = 25;
@@ -68,8 +65,9 @@ pub(crate) struct StepProgram<'a> {
     pub smallest: &'a Smallest,
     /// How far each number may move.
     pub trust: f64,
-    /// Groups whose numbers may not move.
-    pub held: &'a [Group],
+    /// The parameters that may move. After the sets, the unknowns are their numbers, and then
+    /// bounds of the absolute values of these numbers.
+    pub free: &'a [usize],
     /// Cost of a number's distance from 0.
     pub pull: f64,
 }
@@ -94,15 +92,15 @@ pub(crate) struct StepSolution {
 }
 
 impl StepProgram<'_> {
-    /// Solves the step by row generation. `rows` are the first rows, and become the rows that
-    /// nearly decide the answer.
+    /// Solves the step by row generation. `rows` are the first rows, or none, and become the rows
+    /// that nearly decide the answer.
     ///
     /// # Errors
     ///
     /// [`Error::Program`](crate::Error::Program).
     pub(crate) fn solve(&self, rows: &mut Vec<StepRow>) -> Result<StepSolution> {
         if rows.is_empty() {
-            rows.extend(self.first_rows());
+            rows.extend(&self.smallest.deciding);
         }
         let (mut unknowns, mut cost) = self.solve_rows(rows)?;
         let mut reach = self.reach_of(&unknowns);
@@ -125,17 +123,9 @@ impl StepProgram<'_> {
         Layout::new(self.fit.settings, &self.program.cost, &self.program.noise_cost)
     }
 
-    /// The parameters that may move. After the sets, the unknowns are their numbers, and then
-    /// bounds of the absolute values of these numbers.
-    fn free(&self) -> Vec<usize> {
-        let list = self.fit.parameters.list.iter().enumerate();
-        let free = list.filter(|(_, p)| !self.held.contains(&p.quantity.group()));
-        free.map(|(p, _)| p).collect()
-    }
-
     /// The numbers among the unknowns.
     fn numbers_of(&self, unknowns: &[f64]) -> Vec<f64> {
-        let free = self.free();
+        let free = self.free;
         let mut numbers = self.numbers.to_vec();
         for (p, x) in free.iter().zip(&unknowns[unknowns.len() - 2 * free.len()..]) {
             numbers[*p] = *x;
@@ -146,20 +136,6 @@ impl StepProgram<'_> {
     fn moved(&self, unknowns: &[f64]) -> Vec<f64> {
         let pairs = self.numbers_of(unknowns).into_iter().zip(self.numbers);
         pairs.map(|(new, here)| new - here).collect()
-    }
-
-    fn first_rows(&self) -> Vec<StepRow> {
-        let mut rows = Vec::new();
-        let stride = self.tracks.len().div_ceil(FIRST_TRACKS).max(1);
-        for &t in self.tracks.iter().step_by(stride) {
-            let samples = self.samples(t);
-            for k in (0..samples).step_by((samples / 4).max(1)) {
-                let states = self.fit.settings.states.rows(2 * self.fit.joints());
-                let of_sample = (0..states).flat_map(|i| Side::BOTH.map(|side| (t, k, i, side)));
-                rows.extend(of_sample);
-            }
-        }
-        rows
     }
 
     fn samples(&self, track: usize) -> usize {
@@ -206,18 +182,18 @@ impl StepProgram<'_> {
         self.slopes.iter().map(of).collect()
     }
 
-    fn entries(&self, row: StepRow, layout: &Layout, free: &[usize]) -> Vec<(usize, f64)> {
+    fn entries(&self, row: StepRow, layout: &Layout) -> Vec<(usize, f64)> {
         let (t, k, i, side) = row;
         let (centre, radius) = self.reach(t, k, i);
         let mut entries = layout.entries(centre, radius, i, side);
-        let slopes = free.iter().map(|&p| self.slope(p, row));
+        let slopes = self.free.iter().map(|&p| self.slope(p, row));
         entries.extend(slopes.enumerate().map(|(at, slope)| (layout.cost.len() + at, slope)));
         entries
     }
 
     /// Solves with these rows only; returns the unknowns and their cost.
     fn solve_rows(&self, rows: &[StepRow]) -> Result<(Vec<f64>, f64)> {
-        let (layout, free) = (self.layout(), self.free());
+        let (layout, free) = (self.layout(), self.free);
         let (sets, count) = (layout.cost.len(), free.len());
         let scale = self.program.scale();
         let units = self.program.units(&layout, Some(&self.smallest.sets));
@@ -225,7 +201,7 @@ impl StepProgram<'_> {
         let unit: Vec<f64> = units.chain(std::iter::repeat_n(1.0, 2 * count)).collect();
         let (mut matrix, mut bounds) = (Triplets::default(), Vec::new());
         for &row in rows {
-            let entries = self.entries(row, &layout, &free);
+            let entries = self.entries(row, &layout);
             let size = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
             matrix.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / size)));
             let present = free.iter().map(|&p| self.slope(p, row) * self.numbers[p]);
@@ -251,7 +227,7 @@ impl StepProgram<'_> {
             let (top, bottom) = (self.numbers[p] + self.trust, self.numbers[p] - self.trust);
             bounds.extend([0.0, 0.0, top.min(high), -bottom.max(low)]);
         }
-        self.keep_rising(&free, sets, &mut matrix, &mut bounds);
+        self.keep_rising(sets, &mut matrix, &mut bounds);
         let slopes = self.cost_slopes();
         let pull = self.pull.max(LEAST_PULL * total);
         let of_set = |(j, w): (usize, &f64)| {
@@ -269,17 +245,12 @@ impl StepProgram<'_> {
         Ok((unknowns, value * total - present + held))
     }
 
-    /// Keeps friction rising with speed; the numbers of `free` are the unknowns from `first` on.
-    fn keep_rising(
-        &self,
-        free: &[usize],
-        first: usize,
-        matrix: &mut Triplets,
-        bounds: &mut Vec<f64>,
-    ) {
+    /// Keeps friction rising with speed; the numbers are the unknowns from `first` on.
+    fn keep_rising(&self, first: usize, matrix: &mut Triplets, bounds: &mut Vec<f64>) {
         for condition in &self.fit.parameters.rising {
             let (entries, mut bound) = condition.tangent(self.numbers);
-            let (mut own, place) = (Vec::new(), |p: usize| free.iter().position(|own| *own == p));
+            let place = |p: usize| self.free.iter().position(|own| *own == p);
+            let mut own = Vec::new();
             for (p, factor) in entries {
                 match place(p) {
                     Some(at) => own.push((first + at, factor)),

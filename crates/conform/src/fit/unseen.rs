@@ -31,7 +31,7 @@ impl Unseen<'_> {
         let others = whole.tracks(Some(*motion));
         let all = whole.tracks(None);
         let own: Vec<usize> = all.iter().copied().filter(|t| !others.contains(t)).collect();
-        let model = match whole.model(numbers, &all, None) {
+        let model = match whole.model(numbers, &all) {
             Err(Error::RunsAway { .. }) => return Ok((UnseenMotion::runs_away(name), None)),
             model => model?,
         };

@@ -215,6 +215,15 @@ impl<'a> Program<'a> {
         self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
     }
 
+    /// Returns the recording that a row is about.
+    pub(crate) fn run(&self, (b, k, i, side): RowIndex) -> u32 {
+        let envelope = &self.blocks[b].envelope;
+        match side {
+            Side::Upper => envelope.upper_run(k, i),
+            Side::Lower => envelope.lower_run(k, i),
+        }
+    }
+
     pub(crate) fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
         let join = |pick: fn(&Hyperrectangle) -> &Vec<f64>| {
             pick(&sets.initial_set).iter().chain(pick(&sets.input_set)).copied().collect()
