@@ -13,7 +13,7 @@ use crate::fit::group::{FitSettings, Group};
 use crate::fit::parameters::{Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
 use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
-use crate::fit::search::{FoundNumbers, SearchEffort, Wanted};
+use crate::fit::search::{FoundNumbers, SearchEffort, Wanted, size};
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::nominal::input_error::InputError;
@@ -193,7 +193,7 @@ type Kind = std::mem::Discriminant<Quantity>;
 /// dropped.
 ///
 /// The cost has more than one local optimum. One search moves all parameters from the beginning,
-/// and one for each kind of them first the others; the best answer counts.
+/// and one for each kind of them first the others. The best answer counts, with every sample.
 fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
     let all = fit.parameters.except(dropped);
     let kind = |p: usize| std::mem::discriminant(&fit.parameters.list[p].quantity);
@@ -204,15 +204,23 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
         }
     }
     let (start, tracks) = (fit.parameters.start(), fit.tracks(None));
-    let pull = pull * fit.smallest(&fit.model(&start, &tracks)?, &tracks)?.cost;
+    let every_sample = FitTask { stride: 1, ..fit.clone() };
+    let cost = |fit: &FitTask, numbers: &[f64]| -> Result<f64> {
+        Ok(fit.smallest(&fit.model(numbers, &tracks)?, &tracks)?.cost)
+    };
+    let [pull, whole_pull] = [pull * cost(fit, &start)?, pull * cost(&every_sample, &start)?];
     let wanted = |free, effort| Wanted { left_out: None, pull, free, effort };
     let of_held = |held: Option<Kind>| {
-        let others = all.iter().copied().filter(|p| held != Some(kind(*p))).collect();
         let first = match held {
-            Some(_) => fit.search(&wanted(others, SearchEffort::START), &start)?.numbers,
+            Some(held) => {
+                let others = all.iter().copied().filter(|p| held != kind(*p)).collect();
+                fit.search(&wanted(others, SearchEffort::START), &start)?.numbers
+            }
             None => start.clone(),
         };
-        fit.search(&wanted(all.clone(), SearchEffort::START), &first)
+        let mut found = fit.search(&wanted(all.clone(), SearchEffort::WHOLE), &first)?;
+        found.value = cost(&every_sample, &found.numbers)? + whole_pull * size(&found.numbers);
+        Ok(found)
     };
     let held = kinds.iter().map(|kind| Some(*kind)).filter(|_| kinds.len() > 1);
     let starts: Vec<Option<Kind>> = std::iter::once(None).chain(held).collect();
@@ -223,8 +231,7 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
             best = other;
         }
     }
-    let found = fit.search(&wanted(all, SearchEffort::WHOLE), &best.numbers)?;
-    Ok(FoundNumbers { steps: best.steps + found.steps, ..found })
+    Ok(best)
 }
 
 /// Refuses what cannot be fitted, whatever the recordings are.

@@ -178,8 +178,7 @@ impl Search<'_> {
 
     /// The cost with the pull.
     fn value(&self, point: &Point) -> f64 {
-        let sizes = point.numbers.iter().map(|x| x.abs());
-        point.smallest.cost + self.wanted.pull * sizes.sum::<f64>()
+        point.smallest.cost + self.wanted.pull * size(&point.numbers)
     }
 }
 
@@ -191,6 +190,11 @@ fn add_deciding(point: &Point, chosen: &mut Vec<usize>) -> Vec<usize> {
     added.retain(|track| !chosen.contains(track));
     chosen.extend(&added);
     added
+}
+
+/// What the pull weighs.
+pub(crate) fn size(numbers: &[f64]) -> f64 {
+    numbers.iter().map(|x| x.abs()).sum()
 }
 
 fn largest_move(a: &[f64], b: &[f64]) -> f64 {
