@@ -1,6 +1,5 @@
 use std::path::Path;
 
-use reachtube_conform::plausibility::JointWidth;
 use reachtube_conform::result::Severity;
 use reachtube_conform::settings::Equations;
 use reachtube_conform::{Answer, Finding, FitSettings, Progress};
@@ -16,7 +15,10 @@ use crate::error::{Error, Result};
 use crate::findings::{impossible_links, unless_accepted};
 use crate::first_choices::first_choices;
 use crate::held_out::Split;
-use crate::horizon::{HorizonWidths, longest, try_horizons, try_longer};
+use crate::horizon::{
+    HorizonWidths, Longest, candidates, longer_horizons, longest, longest_of_all, ratios,
+    try_horizons, try_longer,
+};
 use crate::journal::{Journal, digest};
 use crate::motors::unknown_motors;
 use crate::remedies::TooWide;
@@ -185,10 +187,14 @@ fn sets(
     let given = chooser.choices.horizon;
     let unfitted = given.unwrap_or_else(|| longest(&horizons, largest).horizon);
     choose_fit(chooser, trial, unfitted);
+    let mut longer = Vec::new();
     if trial.fit.is_some() {
         horizons.retain(|widths| widths.horizon <= unfitted);
-        if given.is_none() {
-            horizons.extend(try_longer(trial, recordings, unfitted, largest)?);
+        match given {
+            Some(_) => {}
+            // Their trials would take all recordings, as the answer does.
+            None if recordings.from_start => longer = longer_horizons(recordings, unfitted),
+            None => horizons.extend(try_longer(trial, recordings, unfitted, largest)?),
         }
     }
     let (found, horizon, reason) = match given {
@@ -197,18 +203,25 @@ fn sets(
             (found, horizon, "given".to_string())
         }
         None => {
-            let (found, horizon, wide) = longest_of_all(trial, recordings, &horizons, largest)?;
-            let reason = reason_of_horizon(&found.answer, wide, (&horizons, horizon), largest);
+            let longer = longer.into_iter().rev();
+            let candidates: Vec<f64> = longer.chain(candidates(&horizons, largest)).collect();
+            let Longest { found, horizon, wide } =
+                longest_of_all(trial, recordings, &candidates, largest)?;
+            let longer = horizons.iter().find(|tried| tried.horizon > horizon);
+            let longer = longer.map(|tried| ("some of the", tried));
+            let longer = wide.last().map(|tried| ("all", tried)).or(longer);
+            let reason = reason_of_horizon(&found.answer, longer, largest);
+            let known: Vec<f64> = horizons.iter().map(|tried| tried.horizon).collect();
+            horizons.extend(wide.into_iter().filter(|tried| !known.contains(&tried.horizon)));
             (found, horizon, reason)
         }
     };
     if trial.fit.is_some() {
-        horizons.retain(|tried| tried.with_fit || tried.horizon <= horizon);
-        if let Some(own) = horizons.iter_mut().find(|tried| tried.horizon == horizon) {
-            let joints = found.answer.found.usefulness.joints.iter();
-            own.ratios = joints.map(JointWidth::ratio).collect();
-            own.with_fit = true;
-        }
+        horizons
+            .retain(|tried| tried.horizon < horizon || (tried.with_fit && tried.horizon > horizon));
+        let (ratios, reason) = (ratios(&found.answer), None);
+        horizons.push(HorizonWidths { horizon, ratios, reason, with_fit: true });
+        horizons.sort_by(|a, b| a.horizon.total_cmp(&b.horizon));
     }
     chooser.choose("horizon", format!("{horizon} s"), reason);
     chooser.choices.horizon = Some(horizon);
@@ -231,53 +244,6 @@ fn choose_fit(chooser: &mut Chooser, trial: &mut Trial, unfitted: f64) {
     let pull = chooser.choices.pull;
     trial.fit = (!groups.is_empty()).then(|| FitSettings { groups: groups.clone(), pull });
     chooser.choices.fit = Some(groups);
-}
-
-/// The joint, from 0, whose set is widest beside its motion, and the ratio.
-type Widest = (usize, f64);
-
-/// Finds the sets over all windows of the longest horizon at which none is wider beside the motion
-/// than `largest`. The horizons were tried on some windows only, so that all of them may need a
-/// shorter one: the widest set of the next longer horizon is returned too, then.
-fn longest_of_all(
-    trial: &Trial,
-    recordings: &Prepared,
-    tried: &[HorizonWidths],
-    largest: f64,
-) -> Result<(Widened, f64, Option<Widest>)> {
-    let mut horizon = longest(tried, largest).horizon;
-    let mut wide = None;
-    loop {
-        let run = || Widened::new(trial, recordings, horizon);
-        let shorter = tried.iter().rev().find(|other| other.horizon < horizon);
-        let Some(shorter) = shorter.filter(|shorter| shorter.worst().1 <= largest) else {
-            return Ok((run()?, horizon, wide));
-        };
-        // A job that continues does not find sets again that were too wide.
-        let mut found = None;
-        let name = format!("{horizon} s, widest of all windows, {}", trial.name());
-        let (joint, ratio) = trial.journal.step(&name, || {
-            let widened = run()?;
-            let (joint, ratio) = worst(&widened.answer);
-            found = Some(widened);
-            // Files have no infinite numbers.
-            Ok((joint, ratio.is_finite().then_some(ratio)))
-        })?;
-        let ratio = ratio.unwrap_or(f64::INFINITY);
-        match (ratio <= largest, found) {
-            (true, Some(widened)) => return Ok((widened, horizon, wide)),
-            (true, None) => return Ok((run()?, horizon, wide)),
-            (false, _) => {
-                wide = Some((joint, ratio));
-                horizon = shorter.horizon;
-            }
-        }
-    }
-}
-
-/// Returns the joint, from 0, whose set is widest beside its motion, and the ratio.
-fn worst(answer: &Answer) -> (usize, f64) {
-    answer.found.usefulness.worst().unwrap_or((0, f64::INFINITY))
 }
 
 /// Chooses whose equations nominal motions satisfy: the equations with which sets stay narrow for
@@ -340,28 +306,23 @@ fn preparation(choices: &Choices, torque: Torque) -> Preparation {
     }
 }
 
-/// Returns why a horizon was chosen. `wide` is the widest set of all windows of the next longer
-/// one, if these were tried.
+/// Returns why a horizon was chosen. `longer` are the sets of the next longer one, and over which
+/// windows.
 fn reason_of_horizon(
     answer: &Answer,
-    wide: Option<Widest>,
-    (tried, horizon): (&[HorizonWidths], f64),
+    longer: Option<(&str, &HorizonWidths)>,
     largest: f64,
 ) -> String {
     let name = |joint: usize| &answer.model.robot.joints[joint].name;
-    let (joint, ratio) = worst(answer);
-    let next = tried.iter().find(|other| other.horizon > horizon);
+    let (joint, ratio) = answer.found.usefulness.worst().unwrap_or((0, f64::INFINITY));
     let mut words = format!("the widest set is {} of the motion ({})", percent(ratio), name(joint));
     if ratio > largest {
         words += &format!(", more than {}, and no other horizon is better", percent(largest));
-    } else if let Some(next) = next {
-        let (windows, (joint, ratio)) = match wide {
-            Some(wide) => ("all", wide),
-            None => ("some of the", next.worst()),
-        };
+    } else if let Some((windows, longer)) = longer {
+        let (joint, ratio) = longer.worst();
         words += &format!(
             "; at {} s {windows} windows give {} ({})",
-            next.horizon,
+            longer.horizon,
             percent(ratio),
             name(joint)
         );

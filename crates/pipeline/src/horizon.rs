@@ -1,3 +1,4 @@
+use reachtube_conform::Answer;
 use reachtube_conform::plausibility::JointWidth;
 use serde::Serialize;
 
@@ -39,6 +40,24 @@ impl HorizonWidths {
         let ratios = self.ratios.iter().copied().enumerate();
         ratios.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
     }
+
+    /// Returns the widths that a step finds, if its job is not cancelled.
+    fn of_step(
+        trial: &Trial,
+        name: &str,
+        horizon: f64,
+        find: impl FnOnce() -> Result<Vec<f64>>,
+    ) -> Result<Self> {
+        // JSON has no infinite ratio, as where a set was lost.
+        let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
+        let (ratios, reason) = trial.journal.step(name, || match find() {
+            Ok(ratios) => Ok((ratios.into_iter().map(finite).collect(), None)),
+            Err(error) if trial.progress.is_cancelled() => Err(error),
+            Err(error) => Ok((Vec::new(), Some(error.to_string()))),
+        })?;
+        let ratios = ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect();
+        Ok(Self { horizon, ratios, reason, with_fit: trial.fit.is_some() })
+    }
 }
 
 /// Finds how the sets grow with the horizon, up to the one at which they are useless.
@@ -57,6 +76,16 @@ pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<H
     }
 }
 
+/// Returns the horizons that are tried and are longer than `than` \[s\], the shortest first.
+pub(crate) fn longer_horizons(recordings: &Prepared, than: f64) -> Vec<f64> {
+    let steps = recordings.logs.iter().map(|log| log.step);
+    let shortest = 3.0 * steps.fold(0.0, f64::max);
+    let whole = recordings.from_start.then(|| recordings.longest());
+    let shorter = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
+    let longer = |horizon: &f64| *horizon > than && *horizon >= shortest;
+    shorter.chain(whole).filter(longer).collect()
+}
+
 /// Finds how the sets grow over horizons longer than `than` \[s\], up to the one at which the
 /// worst joint's set is wider than its motion by the factor `most`. Recordings that count from
 /// their start are tried over all longer horizons.
@@ -71,19 +100,14 @@ pub(crate) fn try_longer(
     most: f64,
 ) -> Result<Vec<HorizonWidths>> {
     let mut tried: Vec<HorizonWidths> = Vec::new();
-    let steps = recordings.logs.iter().map(|log| log.step);
-    let shortest = 3.0 * steps.fold(0.0, f64::max);
-    // A recording that counts from its start moves most in its middle, so all horizons are tried.
-    let whole = recordings.from_start.then(|| recordings.longest());
-    let shorter = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
-    let longer = |horizon: &f64| *horizon > than && *horizon >= shortest;
-    for horizon in shorter.chain(whole).filter(longer) {
+    for horizon in longer_horizons(recordings, than) {
         match try_horizon(trial, recordings, horizon, MOST_WINDOWS)? {
             Some(widths) => tried.push(widths),
             None => break,
         }
         let is_too_wide = tried.last().is_some_and(|widths| widths.worst().1 > most);
-        if is_too_wide && whole.is_none() {
+        // A recording that counts from its start moves most in its middle.
+        if is_too_wide && !recordings.from_start {
             break;
         }
     }
@@ -103,19 +127,63 @@ pub(crate) fn try_horizon(
         other => other?,
     };
     let name = format!("{horizon} s, {most} windows, {}", trial.name());
-    // JSON has no infinite ratio, as where a set was lost.
-    let (ratios, reason) =
-        trial.journal.step(&name, || match Widened::of_some(trial, recordings, horizon, most) {
-            Ok(found) => Ok((ratios(&found.answer.found.usefulness.joints), None)),
-            Err(error) if trial.progress.is_cancelled() => Err(error),
-            Err(error) => Ok((Vec::new(), Some(error.to_string()))),
-        })?;
-    let ratios = ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect();
-    Ok(Some(HorizonWidths { horizon, ratios, reason, with_fit: trial.fit.is_some() }))
+    let widths = |found: Widened| Ok(ratios(&found.answer));
+    let found = || Widened::of_some(trial, recordings, horizon, most).and_then(widths);
+    HorizonWidths::of_step(trial, &name, horizon, found).map(Some)
 }
 
-fn ratios(joints: &[JointWidth]) -> Vec<Option<f64>> {
-    joints.iter().map(|joint| Some(joint.ratio()).filter(|ratio| ratio.is_finite())).collect()
+/// Sets over all windows.
+pub(crate) struct Longest {
+    pub found: Widened,
+    pub horizon: f64,
+    /// The longer horizons at which the sets of all windows are too wide, the longest first.
+    pub wide: Vec<HorizonWidths>,
+}
+
+/// Finds the sets over all windows of the longest of the horizons `candidates`, the longest first,
+/// at which none is wider beside the motion than `largest`; of the last one, if there is none.
+///
+/// # Errors
+///
+/// As [`Widened::new`] for the horizon that is returned; a job that was cancelled.
+pub(crate) fn longest_of_all(
+    trial: &Trial,
+    recordings: &Prepared,
+    candidates: &[f64],
+    largest: f64,
+) -> Result<Longest> {
+    let (last, longer) = candidates.split_last().expect("a horizon was tried");
+    let mut wide = Vec::new();
+    for &horizon in longer {
+        // A job that continues does not find sets again that were too wide.
+        let mut found = None;
+        let name = format!("{horizon} s, all windows, {}", trial.name());
+        let widths = HorizonWidths::of_step(trial, &name, horizon, || {
+            let widened = Widened::new(trial, recordings, horizon)?;
+            Ok(ratios(&found.insert(widened).answer))
+        })?;
+        if widths.worst().1 > largest {
+            wide.push(widths);
+            continue;
+        }
+        let found = found.map_or_else(|| Widened::new(trial, recordings, horizon), Ok)?;
+        return Ok(Longest { found, horizon, wide });
+    }
+    Ok(Longest { found: Widened::new(trial, recordings, *last)?, horizon: *last, wide })
+}
+
+/// Returns the ratio of each joint.
+pub(crate) fn ratios(answer: &Answer) -> Vec<f64> {
+    answer.found.usefulness.joints.iter().map(JointWidth::ratio).collect()
+}
+
+/// Returns the horizons that may be chosen, the longest first: the longest at which no set is wider
+/// beside the motion than `largest`, and the shorter ones.
+pub(crate) fn candidates(tried: &[HorizonWidths], largest: f64) -> Vec<f64> {
+    let longest = longest(tried, largest).horizon;
+    let shorter = tried.iter().rev().filter(|widths| widths.horizon < longest);
+    let narrow = shorter.take_while(|widths| widths.worst().1 <= largest);
+    std::iter::once(longest).chain(narrow.map(|widths| widths.horizon)).collect()
 }
 
 /// Returns the longest horizon at which no set is wider beside the motion than `largest`; if there
