@@ -197,30 +197,28 @@ fn sets(
             None => horizons.extend(try_longer(trial, recordings, unfitted, largest)?),
         }
     }
-    let (found, horizon, reason) = match given {
+    let (Longest { found, horizon, wide }, reason) = match given {
         Some(horizon) => {
             let found = Widened::new(trial, recordings, horizon)?;
-            (found, horizon, "given".to_string())
+            (Longest { found, horizon, wide: Vec::new() }, "given".to_string())
         }
         None => {
             let longer = longer.into_iter().rev();
             let candidates: Vec<f64> = longer.chain(candidates(&horizons, largest)).collect();
-            let Longest { found, horizon, wide } =
-                longest_of_all(trial, recordings, &candidates, largest)?;
-            let longer = horizons.iter().find(|tried| tried.horizon > horizon);
-            let longer = longer.map(|tried| ("some of the", tried));
-            let longer = wide.last().map(|tried| ("all", tried)).or(longer);
-            let reason = reason_of_horizon(&found.answer, longer, largest);
-            let known: Vec<f64> = horizons.iter().map(|tried| tried.horizon).collect();
-            horizons.extend(wide.into_iter().filter(|tried| !known.contains(&tried.horizon)));
-            (found, horizon, reason)
+            let longest = longest_of_all(trial, recordings, &candidates, largest)?;
+            let reason = reason_of_horizon(&longest, &horizons, largest);
+            (longest, reason)
         }
     };
     if trial.fit.is_some() {
-        horizons
-            .retain(|tried| tried.horizon < horizon || (tried.with_fit && tried.horizon > horizon));
         let (ratios, reason) = (ratios(&found.answer), None);
-        horizons.push(HorizonWidths { horizon, ratios, reason, with_fit: true });
+        let own = HorizonWidths { horizon, ratios, reason, with_fit: true };
+        let all: Vec<HorizonWidths> = std::iter::once(own).chain(wide).collect();
+        horizons.retain(|tried| {
+            let is_known = all.iter().any(|known| known.horizon == tried.horizon);
+            !is_known && (tried.with_fit || tried.horizon < horizon)
+        });
+        horizons.extend(all);
         horizons.sort_by(|a, b| a.horizon.total_cmp(&b.horizon));
     }
     chooser.choose("horizon", format!("{horizon} s"), reason);
@@ -306,13 +304,12 @@ fn preparation(choices: &Choices, torque: Torque) -> Preparation {
     }
 }
 
-/// Returns why a horizon was chosen. `longer` are the sets of the next longer one, and over which
-/// windows.
-fn reason_of_horizon(
-    answer: &Answer,
-    longer: Option<(&str, &HorizonWidths)>,
-    largest: f64,
-) -> String {
+/// Returns why a horizon was chosen after some were `tried`.
+fn reason_of_horizon(chosen: &Longest, tried: &[HorizonWidths], largest: f64) -> String {
+    let (answer, horizon) = (&chosen.found.answer, chosen.horizon);
+    let longer = tried.iter().find(|tried| tried.horizon > horizon);
+    let longer = longer.map(|longer| ("some of the", longer));
+    let longer = chosen.wide.last().map(|longer| ("all", longer)).or(longer);
     let name = |joint: usize| &answer.model.robot.joints[joint].name;
     let (joint, ratio) = answer.found.usefulness.worst().unwrap_or((0, f64::INFINITY));
     let mut words = format!("the widest set is {} of the motion ({})", percent(ratio), name(joint));

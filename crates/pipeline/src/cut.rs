@@ -1,15 +1,13 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use reachtube_identify::prepare::{
-    LogEntry, PrepareSettings, RawLog, cut_off, prepare, read, unfiltered,
-};
+use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off, prepare, unfiltered};
 use reachtube_recordings::{
     ColumnSettings, LogSettings, MemoryRuns, Preparation, RunSource, Torque, any_simulated,
 };
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::sorted::{index_names, origins_of};
+use crate::sorted::{origins_of, read_logs};
 use crate::windows::Prepared;
 
 /// Logs that were cut into windows, and what was done to them.
@@ -43,8 +41,7 @@ impl Cut {
         robot.check_physical()?;
         let settings =
             PrepareSettings { max_gap, torque: Some(torque), ..PrepareSettings::default() };
-        let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
-        let raw = read(&entries, Path::new(""), robot, &settings)?;
+        let (raw, motions) = read_logs(paths, robot, &settings)?;
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
         let is_filtered = torque != Torque::Compensated;
@@ -60,7 +57,6 @@ impl Cut {
             }
             None => raw.iter().map(|log| unfiltered(log, &[])).collect::<Result<_, _>>()?,
         };
-        let motions = index_names(paths, &raw);
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         let origins = &origins_of(&raw);
         let origins = Some(origins);
@@ -84,4 +80,45 @@ impl Cut {
 /// Rounds a cut-off to 0.1 Hz, so that it is short in files.
 pub(crate) fn rounded(cut_off: f64) -> f64 {
     (10.0 * cut_off).round() / 10.0
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write;
+
+    use reachtube_recordings::ReadOptions;
+
+    use super::*;
+
+    #[test]
+    fn windows_have_the_order_of_the_index_and_the_temperatures_of_the_log() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut index = String::from("file,suite,order\n");
+        for (order, temperature) in [(7, 31.5), (3, 24.0)] {
+            let mut log = String::from("t,q1,qd1,tau1,temp1\n");
+            for k in 0..101 {
+                let t = 0.01 * f64::from(k);
+                writeln!(log, "{t:.2},{:.9},{:.9},0.5,{temperature}", t.sin(), t.cos()).unwrap();
+            }
+            std::fs::write(folder.path().join(format!("run{order}.csv")), log).unwrap();
+            writeln!(index, "run{order}.csv,A,{order}").unwrap();
+        }
+        std::fs::write(folder.path().join("runs.csv"), index).unwrap();
+        let robot = "schema_version = 1\nname = \"hinge\"\n[[joint]]\nname = \"hinge\"\n\
+                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
+                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
+                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
+        let robot = Robot::from_toml(robot, "hinge").unwrap();
+        let paths = [folder.path().to_path_buf()];
+        let cut = Cut::new(&robot, Torque::Compensated, 0.25, None, &paths).unwrap();
+        let windows = cut.windows.runs();
+        assert_eq!(windows.len(), 8);
+        for (index, window) in windows.iter().enumerate() {
+            let is_first = window.file.contains("run3");
+            assert_eq!(window.order, if is_first { 3 } else { 7 }, "{}", window.file);
+            let run = cut.windows.read(index, &ReadOptions::default()).unwrap();
+            let temperature = if is_first { 24.0 } else { 31.5 };
+            assert_eq!(run.temperatures, vec![temperature; run.len()], "{}", window.file);
+        }
+    }
 }

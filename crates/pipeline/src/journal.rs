@@ -100,6 +100,7 @@ pub(crate) fn data_digest(raw: &[Arc<RawLog>], motions: &[String]) -> String {
     for log in raw {
         sha256.update(log.name.as_bytes());
         sha256.update(log.file.as_os_str().as_encoded_bytes());
+        sha256.update(log.order.unwrap_or_default().to_le_bytes());
         for column in [&log.run.times, &log.run.states, &log.run.torques, &log.run.temperatures] {
             sha256.update(column.len().to_le_bytes());
             column.iter().for_each(|value| sha256.update(value.to_le_bytes()));

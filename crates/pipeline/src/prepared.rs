@@ -1,14 +1,14 @@
 use std::path::{Path, PathBuf};
 
 use reachtube_conform::{CheckJob, Model, Setup};
-use reachtube_identify::prepare::{LogEntry, PrepareSettings, read};
+use reachtube_identify::prepare::PrepareSettings;
 use reachtube_recordings::{DataSet, MemoryRuns, Preparation, any_simulated};
 use reachtube_robot::Robot;
 
 use crate::error::Result;
 use crate::planned::Planned;
 use crate::robot::prepare_for;
-use crate::sorted::{index_names, origins_of};
+use crate::sorted::{origins_of, read_logs};
 use crate::windows::Prepared;
 
 /// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
@@ -50,15 +50,14 @@ pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> 
         log: log.clone(),
         ..PrepareSettings::default()
     };
-    let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
-    let raw = read(&entries, Path::new(""), &robot, &settings)?;
+    let (raw, motions) = read_logs(paths, &robot, &settings)?;
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    let (motions, from_start) = (index_names(paths, &raw), window.is_none());
+    let (from_start, motions) = (window.is_none(), &motions);
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
     let origins = &origins_of(&raw);
     let origins = Some(origins);
-    let prepared = Prepared { logs: &logs, motions: &motions, from_start, simulated, origins };
+    let prepared = Prepared { logs: &logs, motions, from_start, simulated, origins };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),

@@ -46,8 +46,7 @@ impl Sorted {
         robot: &Robot,
         settings: &PrepareSettings,
     ) -> Result<Self> {
-        let entries: Vec<LogEntry> = given.data.iter().cloned().map(LogEntry::from).collect();
-        let raw = read(&entries, Path::new(""), robot, settings)?;
+        let (raw, known) = read_logs(&given.data, robot, settings)?;
         let (raw, copies) = without_copies(raw);
         let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
         let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
@@ -61,8 +60,8 @@ impl Sorted {
             let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
-        let known = indexed(given.data.iter().cloned());
-        let known: Vec<Option<String>> = moving.iter().map(|log| named(log, &known)).collect();
+        let known: Vec<Option<String>> =
+            moving.iter().map(|log| known.get(&log.name).cloned()).collect();
         let shown: Vec<&RawLog> = moving.iter().map(|log| &***log).collect();
         let names = motions(&shown, &known);
         let digest = data_digest(&raw, &names);
@@ -118,10 +117,30 @@ fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
     (kept, finding)
 }
 
-/// Returns the motion, or else the suite, of each recording by its name, where an index names it.
-pub(crate) fn index_names(paths: &[PathBuf], raw: &[RawLog]) -> BTreeMap<String, String> {
-    let known = indexed(paths.iter().cloned());
-    raw.iter().filter_map(|log| Some((log.name.clone(), named(log, &known)?))).collect()
+/// Reads recordings, whose order is the one of their index. Returns the motion, or else the suite,
+/// of each by its name too, where the log or an index names it.
+///
+/// # Errors
+///
+/// Recordings that cannot be read.
+pub(crate) fn read_logs(
+    paths: &[PathBuf],
+    robot: &Robot,
+    settings: &PrepareSettings,
+) -> Result<(Vec<RawLog>, BTreeMap<String, String>)> {
+    let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
+    let mut raw = read(&entries, Path::new(""), robot, settings)?;
+    let (known, mut names) = (indexed(paths), BTreeMap::new());
+    for log in &mut raw {
+        let entry = known.get(&log.file);
+        log.order = log.order.or_else(|| entry.map(|entry| entry.order));
+        let motion = log.motion.as_ref();
+        let of_index = entry.and_then(|entry| entry.motion.as_ref().or(entry.suite.as_ref()));
+        if let Some(name) = motion.or(of_index) {
+            names.insert(log.name.clone(), name.clone());
+        }
+    }
+    Ok((raw, names))
 }
 
 /// Returns the SHA-256 of each recording by its name.
@@ -129,21 +148,13 @@ pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, String> {
     raw.iter().map(|log| (log.name.clone(), log.run.sha256.clone())).collect()
 }
 
-/// Returns the motion that a marker in the log names, or the index of its folder.
-fn named(log: &RawLog, known: &BTreeMap<PathBuf, String>) -> Option<String> {
-    log.motion.clone().or_else(|| known.get(&log.file).cloned())
-}
-
-/// Returns the motion, or else the suite, of each file that the index of a folder names.
-fn indexed(folders: impl Iterator<Item = PathBuf>) -> BTreeMap<PathBuf, String> {
-    let indices = folders.filter(|folder| folder.join("runs.csv").is_file());
-    let sets = indices.filter_map(|folder| DataSet::open(&folder).ok());
-    let motion = |set: DataSet| -> Vec<(PathBuf, String)> {
-        let named = |(index, run): (usize, &RunEntry)| {
-            let motion = run.motion.clone().or_else(|| run.suite.clone())?;
-            Some((set.run_name(index), motion))
-        };
-        set.runs().iter().enumerate().filter_map(named).collect()
+/// Returns what the indices of folders say of each file.
+fn indexed(folders: &[PathBuf]) -> BTreeMap<PathBuf, RunEntry> {
+    let indices = folders.iter().filter(|folder| folder.join("runs.csv").is_file());
+    let sets = indices.filter_map(|folder| DataSet::open(folder).ok());
+    let entries = |set: DataSet| -> Vec<(PathBuf, RunEntry)> {
+        let runs = set.runs().iter().enumerate();
+        runs.map(|(index, run)| (set.run_name(index), run.clone())).collect()
     };
-    sets.flat_map(motion).collect()
+    sets.flat_map(entries).collect()
 }

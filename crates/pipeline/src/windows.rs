@@ -69,6 +69,7 @@ impl Prepared<'_> {
             if is_wanted(name) {
                 let run = run(&window.log);
                 let entry = runs.push(name, Some(&window.suite), Some(&motion), run);
+                entry.order = window.log.order.unwrap_or(entry.order);
                 entry.simulated = self.simulated;
                 entry.origin = self.origins.and_then(|all| all.get(&window.motion).cloned());
             }
@@ -107,6 +108,7 @@ fn run(log: &PreparedLog) -> Run {
     let time = |k: usize| (1e6 * k as f64 * log.step).round() / 1e6;
     let states = (0..log.len()).flat_map(|k| [log.q(k), log.qd(k)].concat()).collect();
     let times = (0..log.len()).map(time).collect();
-    Run::new(log.joints, times, states, log.tau.clone())
-        .expect("a window has one row of finite numbers for each sample")
+    let run = Run::new(log.joints, times, states, log.tau.clone())
+        .expect("a window has one row of finite numbers for each sample");
+    Run { temperatures: log.temperatures.clone(), ..run }
 }

@@ -50,16 +50,7 @@ impl<'a> Signals<'a> {
     /// Returns the filtered log with the ends still in place.
     pub(super) fn log(&self, gains: &[f64], differentiated: bool) -> PreparedLog {
         let n = self.raw.run.joints;
-        let mut log = PreparedLog::zeros(&self.raw.name, n, self.even(Run::q, 0).len(), self.step);
-        log.order = self.raw.order;
-        // Temperatures change too slowly to need the low-pass.
-        if !self.raw.run.temperatures.is_empty() {
-            log.temperatures = vec![0.0; log.q.len()];
-            (0..n).for_each(|joint| {
-                let column = self.even(Run::temperature, joint);
-                set_column(&mut log.temperatures, joint, n, &column);
-            });
-        }
+        let mut log = still(self.raw, self.step);
         for joint in 0..n {
             let q = self.filtered(self.even(Run::q, joint));
             let qd = if differentiated {
@@ -108,6 +99,23 @@ fn warm_robot<'a>(robot: &'a Robot, log: &PreparedLog, k: usize) -> Cow<'a, Robo
         Some(temperatures) => warm.at_temperature(temperatures),
         None => warm,
     })
+}
+
+/// Returns the log of a recording without its motion: with its order and its temperatures, which
+/// change too slowly to need the low-pass.
+pub(super) fn still(raw: &RawLog, step: f64) -> PreparedLog {
+    let (n, run) = (raw.run.joints, &raw.run);
+    let samples = resampled(&run.times, raw.column(Run::q, 0), step).len();
+    let mut log = PreparedLog::zeros(&raw.name, n, samples, step);
+    log.order = raw.order;
+    if !run.temperatures.is_empty() {
+        log.temperatures = vec![0.0; log.q.len()];
+        for joint in 0..n {
+            let column = resampled(&run.times, raw.column(Run::temperature, joint), step);
+            set_column(&mut log.temperatures, joint, n, &column);
+        }
+    }
+    log
 }
 
 /// Replaces a column of rows of `n` values.
