@@ -39,7 +39,7 @@ impl Widened {
     ///
     /// As [`Trial::run`] and [`Trial::carried_over`].
     pub(crate) fn new(trial: &Trial, recordings: &Prepared, horizon: f64) -> Result<Self> {
-        let answer = trial.run(recordings.cut(horizon, usize::MAX)?)?;
+        let answer = trial.run_over(horizon, recordings.cut(horizon, usize::MAX)?)?;
         let left_out = match recordings.from_start {
             true => unseen(&answer),
             false => trial.carried_over(&answer, recordings, horizon)?,
@@ -62,7 +62,7 @@ impl Widened {
         horizon: f64,
         most: usize,
     ) -> Result<Self> {
-        let answer = trial.run(recordings.cut(horizon, most)?)?;
+        let answer = trial.run_over(horizon, recordings.cut(horizon, most)?)?;
         let left_out = unseen(&answer);
         Self::with(trial, recordings, answer, &left_out)
     }

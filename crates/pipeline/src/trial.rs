@@ -4,8 +4,9 @@ use reachtube_abstraction::ExpansionPoint;
 use reachtube_conform::settings::{Equations, NominalStart};
 use reachtube_conform::{Answer, FitSettings, Job, Noise, Problem, Progress, Settings};
 use reachtube_files::hex;
-use reachtube_recordings::{MemoryRuns, Torque};
+use reachtube_recordings::{MemoryRuns, RunSource, Torque};
 use reachtube_robot::Robot;
+use reachtube_scalar::number::counted;
 use sha2::{Digest, Sha256};
 
 use crate::error::Result;
@@ -92,6 +93,19 @@ impl Trial<'_> {
     /// As [`Job::run`].
     pub(crate) fn run(&self, windows: MemoryRuns) -> Result<Answer> {
         Ok(self.job(windows)?.run(&self.observer(None))?)
+    }
+
+    /// Does what [`run`](Self::run) does for windows of `horizon` \[s\], and reports what is fitted.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub(crate) fn run_over(&self, horizon: f64, windows: MemoryRuns) -> Result<Answer> {
+        if self.fit.is_some() {
+            let count = counted(windows.runs().len(), "window");
+            self.progress.finished(&format!("fitting over {horizon} s, {count}"));
+        }
+        self.run(windows)
     }
 
     /// Reads windows.

@@ -224,14 +224,11 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
     };
     let held = kinds.iter().map(|kind| Some(*kind)).filter(|_| kinds.len() > 1);
     let starts: Vec<Option<Kind>> = std::iter::once(None).chain(held).collect();
-    let mut answers: Vec<Result<FoundNumbers>> = starts.into_par_iter().map(of_held).collect();
-    let mut best = answers.remove(0)?;
-    for other in answers.into_iter().flatten() {
-        if other.value < best.value {
-            best = other;
-        }
-    }
-    Ok(best)
+    let answers: Vec<Result<FoundNumbers>> = starts.into_par_iter().map(of_held).collect();
+    fit.progress.go_on()?;
+    let value = |answer: &Result<FoundNumbers>| answer.as_ref().map_or(f64::INFINITY, |a| a.value);
+    let best = answers.into_iter().min_by(|a, b| value(a).total_cmp(&value(b)));
+    best.expect("a search that holds nothing")
 }
 
 /// Refuses what cannot be fitted, whatever the recordings are.

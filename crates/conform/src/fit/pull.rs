@@ -1,5 +1,7 @@
 //! The weight of the pull toward the identified values, chosen by leaving one motion out.
 
+use std::time::{Duration, Instant};
+
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
@@ -148,10 +150,13 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
     let identified = identified.collect::<Result<_>>()?;
     let (mut tried, mut best) = (Vec::<PullCost>::new(), None::<Folded>);
     let mut numbers = vec![fit.parameters.start(); folds.len()];
+    let began = Instant::now();
     for pull in pulls {
         let folded = Folded::new(&folds, &numbers, pull, &[])?;
         if given.is_none() {
-            fit.progress.finished(&folded.mean.in_words(folds.len()));
+            let words = folded.mean.in_words(folds.len());
+            let left = tried.is_empty().then(|| time_left(fit.parameters, began.elapsed()));
+            fit.progress.finished(&(words + &left.unwrap_or_default()));
         }
         tried.push(folded.mean.clone());
         if best.as_ref().is_some_and(|best| !folded.mean.is_less(&best.mean)) {
@@ -171,6 +176,16 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
     }
     let missing = missing.into_iter().collect();
     Ok(PullChoice { pull, left_out, missing, identified, tried, dropped })
+}
+
+/// Returns in words how long a fit may still take after its first round of fits without each
+/// motion: a round for each other weight and each group that may be dropped, and about two for the
+/// answer.
+fn time_left(parameters: &Parameters, round: Duration) -> String {
+    let groups = parameters.groups().len();
+    let rounds = PULLS.len() - 1 + (groups * (groups + 1) / 2 - 1) + 2;
+    let seconds = (rounds as f64 * round.as_secs_f64()).ceil();
+    format!("; this fit takes about {seconds} s more")
 }
 
 impl<'a> Fold<'a> {
