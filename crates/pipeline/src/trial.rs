@@ -95,7 +95,7 @@ impl Trial<'_> {
         Ok(self.job(windows)?.run(&self.observer(None))?)
     }
 
-    /// Does what [`run`](Self::run) does for windows of `horizon` \[s\], and reports what is fitted.
+    /// Does what [`run`](Self::run) does for windows of `horizon` \[s\], and reports a fit.
     ///
     /// # Errors
     ///
