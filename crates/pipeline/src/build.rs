@@ -2,7 +2,7 @@ use std::path::Path;
 
 use reachtube_conform::result::Severity;
 use reachtube_conform::settings::Equations;
-use reachtube_conform::{Answer, Finding, FitSettings, Progress};
+use reachtube_conform::{Answer, Finding, FitSettings, Group, Progress};
 use reachtube_identify::prepare::{PrepareSettings, RawLog};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
@@ -14,7 +14,7 @@ use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
 use crate::findings::{impossible_links, unless_accepted};
 use crate::first_choices::first_choices;
-use crate::held_out::Split;
+use crate::held_out::{Recording, Split};
 use crate::horizon::{
     HorizonWidths, Longest, candidates, longer_horizons, longest, longest_of_all, ratios,
     try_horizons, try_longer,
@@ -64,7 +64,8 @@ pub struct Built {
 ///
 /// Recordings that cannot be read, show no motion of several joints, or are shorter than every
 /// horizon; a robot that cannot be identified although its description is no body; a model that
-/// runs away over the shortest horizon.
+/// runs away over the shortest horizon; a fit of warm-up to recordings that do not say how warm the
+/// robot was.
 pub fn build(
     robot: &Robot,
     torque: Torque,
@@ -79,6 +80,7 @@ pub fn build(
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let journal = Journal::open(journal, digest(robot, torque, given, &sorted.digest));
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
+    refuse_unknown_warmth(given, &split)?;
     chooser.choose_held_out(&split);
     let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &*recording.log).collect();
     let choices = first_choices(&mut chooser, &journal, robot, torque, &raw, &settings);
@@ -99,6 +101,24 @@ pub fn build(
     chooser.choices.identify = Some(chosen.is_identified);
     let job = Decided { robot, given, split: &split, evidence: &evidence };
     job.finish(chooser, chosen, (sorted.notes, sorted.findings), sorted.simulated)
+}
+
+/// Refuses a fit of warm-up to recordings that do not say how warm the robot was.
+fn refuse_unknown_warmth(given: &Choices, split: &Split) -> Result<()> {
+    let is_fitted = given.fit.as_ref().is_some_and(|groups| groups.contains(&Group::WarmUp));
+    let is_unknown = |recording: &Recording| {
+        recording.log.order.is_none() && recording.log.run.temperatures.is_empty()
+    };
+    let mut all = split.kept.iter().chain(&split.held_out);
+    let unknown = all.find(|recording| is_fitted && is_unknown(recording));
+    unknown.map_or(Ok(()), |recording| {
+        Err(Error::Choice {
+            key: "fit",
+            value: format!("warm-up, for {}", recording.log.file.display()),
+            needed: "an index runs.csv, whose column order says how many runs warmed the robot up \
+                     before, or the columns temp1 to tempn",
+        })
+    })
 }
 
 /// A job whose motions are split and whose robot is chosen.

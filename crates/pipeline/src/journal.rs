@@ -230,6 +230,20 @@ mod tests {
     }
 
     #[test]
+    fn warm_up_is_not_fitted_to_recordings_in_no_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let robot = logs(folder.path());
+        let fit = Some(vec![reachtube_conform::Group::WarmUp]);
+        let given = Choices { data: vec![folder.path().into()], fit, ..Choices::default() };
+        let build = || build(&robot, Torque::Motor, &given, None, &mut |_| (), &Silent);
+        let refused = build().err().unwrap().to_string();
+        assert!(refused.contains("a.csv; give an index runs.csv"), "{refused}");
+        let index = "file,suite,order\na.csv,a,4\nb.csv,b,2\nc.csv,c,9\n";
+        std::fs::write(folder.path().join("runs.csv"), index).unwrap();
+        build().unwrap();
+    }
+
+    #[test]
     fn steps_are_done_once_and_belong_to_their_job() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("progress.json");
