@@ -14,7 +14,7 @@ use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
 use crate::findings::{impossible_links, unless_accepted};
 use crate::first_choices::first_choices;
-use crate::held_out::{Recording, Split};
+use crate::held_out::Split;
 use crate::horizon::{
     HorizonWidths, Longest, candidates, longer_horizons, longest, longest_of_all, ratios,
     try_horizons, try_longer,
@@ -106,19 +106,17 @@ pub fn build(
 /// Refuses a fit of warm-up to recordings that do not say how warm the robot was.
 fn refuse_unknown_warmth(given: &Choices, split: &Split) -> Result<()> {
     let is_fitted = given.fit.as_ref().is_some_and(|groups| groups.contains(&Group::WarmUp));
-    let is_unknown = |recording: &Recording| {
-        recording.log.order.is_none() && recording.log.run.temperatures.is_empty()
-    };
-    let mut all = split.kept.iter().chain(&split.held_out);
-    let unknown = all.find(|recording| is_fitted && is_unknown(recording));
-    unknown.map_or(Ok(()), |recording| {
-        Err(Error::Choice {
+    let mut logs = split.kept.iter().chain(&split.held_out).map(|recording| &recording.log);
+    let unknown = logs.find(|log| log.order.is_none() && log.run.temperatures.is_empty());
+    match unknown.filter(|_| is_fitted) {
+        None => Ok(()),
+        Some(log) => Err(Error::Choice {
             key: "fit",
-            value: format!("warm-up, for {}", recording.log.file.display()),
+            value: format!("warm-up, for {}", log.file.display()),
             needed: "an index runs.csv, whose column order says how many runs warmed the robot up \
                      before, or the columns temp1 to tempn",
-        })
-    })
+        }),
+    }
 }
 
 /// A job whose motions are split and whose robot is chosen.

@@ -7,7 +7,7 @@ use reachtube_recordings::{
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::sorted::{origins_of, read_logs};
+use crate::sorted::{motions_of, origins_of, read_logs};
 use crate::windows::Prepared;
 
 /// Logs that were cut into windows, and what was done to them.
@@ -41,7 +41,7 @@ impl Cut {
         robot.check_physical()?;
         let settings =
             PrepareSettings { max_gap, torque: Some(torque), ..PrepareSettings::default() };
-        let (raw, motions) = read_logs(paths, robot, &settings)?;
+        let raw = read_logs(paths, robot, &settings)?;
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
         let is_filtered = torque != Torque::Compensated;
@@ -57,11 +57,11 @@ impl Cut {
             }
             None => raw.iter().map(|log| unfiltered(log, &[])).collect::<Result<_, _>>()?,
         };
+        let motions = &motions_of(&raw);
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         let origins = &origins_of(&raw);
         let origins = Some(origins);
-        let prepared =
-            Prepared { logs: &logs, motions: &motions, from_start: false, simulated, origins };
+        let prepared = Prepared { logs: &logs, motions, from_start: false, simulated, origins };
         let windows = prepared.cut(horizon, usize::MAX)?;
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));

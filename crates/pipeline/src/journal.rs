@@ -114,6 +114,7 @@ mod tests {
     use std::fmt::Write;
 
     use reachtube_conform::{Progress, Silent};
+    use reachtube_recordings::RunSource;
 
     use super::*;
     use crate::build::{Built, build};
@@ -240,7 +241,9 @@ mod tests {
         assert!(refused.contains("a.csv; give an index runs.csv"), "{refused}");
         let index = "file,suite,order\na.csv,a,4\nb.csv,b,2\nc.csv,c,9\n";
         std::fs::write(folder.path().join("runs.csv"), index).unwrap();
-        build().unwrap();
+        let held_out = build().unwrap().shown_held_out;
+        assert!(held_out.runs().iter().all(|run| run.order == 9 && run.file.contains('c')));
+        assert!(!held_out.runs().is_empty());
     }
 
     #[test]

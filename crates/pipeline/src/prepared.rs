@@ -8,7 +8,7 @@ use reachtube_robot::Robot;
 use crate::error::Result;
 use crate::planned::Planned;
 use crate::robot::prepare_for;
-use crate::sorted::{origins_of, read_logs};
+use crate::sorted::{motions_of, origins_of, read_logs};
 use crate::windows::Prepared;
 
 /// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
@@ -50,9 +50,9 @@ pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> 
         log: log.clone(),
         ..PrepareSettings::default()
     };
-    let (raw, motions) = read_logs(paths, &robot, &settings)?;
+    let raw = read_logs(paths, &robot, &settings)?;
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    let (from_start, motions) = (window.is_none(), &motions);
+    let (from_start, motions) = (window.is_none(), &motions_of(&raw));
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
     let origins = &origins_of(&raw);

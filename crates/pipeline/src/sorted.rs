@@ -46,8 +46,7 @@ impl Sorted {
         robot: &Robot,
         settings: &PrepareSettings,
     ) -> Result<Self> {
-        let (raw, known) = read_logs(&given.data, robot, settings)?;
-        let (raw, copies) = without_copies(raw);
+        let (raw, copies) = without_copies(read_logs(&given.data, robot, settings)?);
         let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
         let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
         let of = |kind: Kind| -> Vec<&Arc<RawLog>> {
@@ -60,8 +59,7 @@ impl Sorted {
             let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
-        let known: Vec<Option<String>> =
-            moving.iter().map(|log| known.get(&log.name).cloned()).collect();
+        let known: Vec<Option<String>> = moving.iter().map(|log| log.motion.clone()).collect();
         let shown: Vec<&RawLog> = moving.iter().map(|log| &***log).collect();
         let names = motions(&shown, &known);
         let digest = data_digest(&raw, &names);
@@ -117,8 +115,8 @@ fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
     (kept, finding)
 }
 
-/// Reads recordings, whose order is the one of their index. Returns the motion, or else the suite,
-/// of each by its name too, where the log or an index names it.
+/// Reads recordings. Each has the order of its index, and the motion, or else the suite, where the
+/// log names no motion itself.
 ///
 /// # Errors
 ///
@@ -127,20 +125,21 @@ pub(crate) fn read_logs(
     paths: &[PathBuf],
     robot: &Robot,
     settings: &PrepareSettings,
-) -> Result<(Vec<RawLog>, BTreeMap<String, String>)> {
+) -> Result<Vec<RawLog>> {
     let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
-    let mut raw = read(&entries, Path::new(""), robot, settings)?;
-    let (known, mut names) = (indexed(paths), BTreeMap::new());
+    let (mut raw, known) = (read(&entries, Path::new(""), robot, settings)?, indexed(paths));
     for log in &mut raw {
-        let entry = known.get(&log.file);
-        log.order = log.order.or_else(|| entry.map(|entry| entry.order));
-        let motion = log.motion.as_ref();
-        let of_index = entry.and_then(|entry| entry.motion.as_ref().or(entry.suite.as_ref()));
-        if let Some(name) = motion.or(of_index) {
-            names.insert(log.name.clone(), name.clone());
+        if let Some(RunEntry { motion, suite, order, .. }) = known.get(&log.file).cloned() {
+            log.motion = log.motion.take().or(motion).or(suite);
+            log.order.get_or_insert(order);
         }
     }
-    Ok((raw, names))
+    Ok(raw)
+}
+
+/// Returns the motion of each recording that has one, by the recording's name.
+pub(crate) fn motions_of(raw: &[RawLog]) -> BTreeMap<String, String> {
+    raw.iter().filter_map(|log| Some((log.name.clone(), log.motion.clone()?))).collect()
 }
 
 /// Returns the SHA-256 of each recording by its name.
@@ -157,4 +156,31 @@ fn indexed(folders: &[PathBuf]) -> BTreeMap<PathBuf, RunEntry> {
         runs.map(|(index, run)| (set.run_name(index), run.clone())).collect()
     };
     sets.flat_map(entries).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_one_name_in_two_folders_have_the_motions_and_orders_of_their_own_index() {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = ["a", "b"].map(|name| folder.path().join(name));
+        for (path, (suite, order)) in paths.iter().zip([("A", 3), ("B", 8)]) {
+            std::fs::create_dir(path).unwrap();
+            let log = format!("t,q1,qd1,tau1\n0,0,1,{order}\n0.1,0.1,1,{order}\n0.2,0.2,1,0\n");
+            std::fs::write(path.join("run.csv"), log).unwrap();
+            let index = format!("file,suite,order\nrun.csv,{suite},{order}\n");
+            std::fs::write(path.join("runs.csv"), index).unwrap();
+        }
+        let robot = "schema_version = 1\nname = \"hinge\"\n[[joint]]\nname = \"hinge\"\n\
+                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
+                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
+                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
+        let robot = Robot::from_toml(robot, "hinge").unwrap();
+        let raw = read_logs(&paths, &robot, &PrepareSettings::default()).unwrap();
+        let own = raw.iter().map(|log| (log.name.as_str(), log.motion.as_deref(), log.order));
+        let own: Vec<_> = own.collect();
+        assert_eq!(own, [("run", Some("A"), Some(3)), ("run", Some("B"), Some(8))]);
+    }
 }

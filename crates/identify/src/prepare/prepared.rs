@@ -7,7 +7,7 @@ use crate::prepare::motors::add_motor_inertia;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource};
-use crate::prepare::signals::{Signals, set_column, still};
+use crate::prepare::signals::{Signals, set_column, without_motion};
 use rayon::prelude::*;
 use reachtube_recordings::{Run, Torque};
 use reachtube_robot::friction::Coulomb;
@@ -90,7 +90,7 @@ pub fn unfiltered(raw: &RawLog, gains: &[f64]) -> Result<PreparedLog> {
     })?;
     let n = raw.run.joints;
     let even = |which, joint| resampled(&raw.run.times, raw.column(which, joint), step);
-    let mut log = still(raw, step);
+    let mut log = without_motion(raw, step);
     for joint in 0..n {
         let qd = even(Run::qd, joint);
         let gain = gains.get(joint).copied().unwrap_or(1.0);

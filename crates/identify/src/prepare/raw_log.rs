@@ -8,7 +8,7 @@ pub struct RawLog {
     pub name: String,
     /// The file.
     pub file: PathBuf,
-    /// The motion that it shows, where the log names it.
+    /// The motion that it shows, where the log or an index names it.
     pub motion: Option<String>,
     /// Number of the recording since the robot's start, from 1, where it is known.
     pub order: Option<u64>,

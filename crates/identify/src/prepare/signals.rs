@@ -50,7 +50,7 @@ impl<'a> Signals<'a> {
     /// Returns the filtered log with the ends still in place.
     pub(super) fn log(&self, gains: &[f64], differentiated: bool) -> PreparedLog {
         let n = self.raw.run.joints;
-        let mut log = still(self.raw, self.step);
+        let mut log = without_motion(self.raw, self.step);
         for joint in 0..n {
             let q = self.filtered(self.even(Run::q, joint));
             let qd = if differentiated {
@@ -101,9 +101,9 @@ fn warm_robot<'a>(robot: &'a Robot, log: &PreparedLog, k: usize) -> Cow<'a, Robo
     })
 }
 
-/// Returns the log of a recording without its motion: with its order and its temperatures, which
-/// change too slowly to need the low-pass.
-pub(super) fn still(raw: &RawLog, step: f64) -> PreparedLog {
+/// Returns the log of a recording with its order and its temperatures, which change too slowly to
+/// need the low-pass. All else is zero.
+pub(super) fn without_motion(raw: &RawLog, step: f64) -> PreparedLog {
     let (n, run) = (raw.run.joints, &raw.run);
     let samples = resampled(&run.times, raw.column(Run::q, 0), step).len();
     let mut log = PreparedLog::zeros(&raw.name, n, samples, step);
