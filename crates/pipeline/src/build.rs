@@ -333,6 +333,8 @@ fn reason_of_horizon(chosen: &Longest, tried: &[HorizonWidths], largest: f64) ->
     let mut words = format!("the widest set is {} of the motion ({})", percent(ratio), name(joint));
     if ratio > largest {
         words += &format!(", more than {}, and no other horizon is better", percent(largest));
+    } else if let Some((windows, HorizonWidths { horizon, reason: Some(reason), .. })) = longer {
+        words += &format!("; at {horizon} s {windows} windows give no sets: {reason}");
     } else if let Some((windows, longer)) = longer {
         let (joint, ratio) = longer.worst();
         words += &format!(
