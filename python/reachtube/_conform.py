@@ -243,7 +243,7 @@ def check(
         return Check(
             _reachtube.check(
                 text_of(model),
-                source_for(model, data),
+                source_for(model, data, None if max_gap is None else real("max_gap", max_gap)),
                 names(suites),
                 differing(notion, until, max_gap),
                 tell,

@@ -46,11 +46,11 @@ def native_of_logs(data: Logs) -> tuple[list[str], _reachtube.Source | None]:
     return paths, Recordings(runs)._native if runs else None
 
 
-def source_for(model: Model, data: Logs) -> _reachtube.Source:
+def source_for(model: Model, data: Logs, max_gap: float | None = None) -> _reachtube.Source:
     """Return the native source of recordings that are compared with a model.
 
     Logs for a model that `model` made are prepared as its own were.
     """
     if "preparation" in model._content:
-        return _reachtube.prepared(model._text, *native_of_logs(data))
+        return _reachtube.prepared(model._text, max_gap, *native_of_logs(data))
     return source(data)  # type: ignore[arg-type]

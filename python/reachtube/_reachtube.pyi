@@ -258,7 +258,9 @@ def cut(
     paths: list[str],
     runs: Source | None,
 ) -> tuple[Source, str, list[str]]: ...
-def prepared(model: str, paths: list[str], runs: Source | None) -> Source: ...
+def prepared(
+    model: str, max_gap: float | None, paths: list[str], runs: Source | None
+) -> Source: ...
 def prepare(
     robot: Robot,
     paths: list[str],

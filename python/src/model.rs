@@ -106,9 +106,11 @@ fn kept(built: &Built) -> Result<String> {
 
 /// Reads logs and does to them what was done to the recordings of a model, whose text is `model`.
 #[pyfunction]
+#[pyo3(signature = (model, max_gap, paths, runs))]
 pub(crate) fn prepared(
     py: Python<'_>,
     model: String,
+    max_gap: Option<f64>,
     paths: Vec<PathBuf>,
     runs: Option<PyRef<'_, NativeSource>>,
 ) -> PyResult<NativeSource> {
@@ -120,7 +122,7 @@ pub(crate) fn prepared(
         let preparation = preparation
             .ok_or_else(|| Failure::ModelFile("the model takes recordings as they are".into()))?;
         let logs = LogsOnDisk::new(paths, runs.as_ref())?;
-        let windows = reachtube::pipeline::prepared(&model, preparation, &logs.paths);
+        let windows = reachtube::pipeline::prepared(&model, preparation, &logs.paths, max_gap);
         windows.map_err(|error| logs.named(error))
     })?;
     Ok(NativeSource::in_memory(windows))

@@ -51,7 +51,7 @@ impl OpenedCheck {
                 [given, expected].map(|torque| format!("{torque:?}").to_lowercase());
             return Err(Error::OtherTorque { given, model });
         }
-        let job = check_job(model, setup, &args.data)?
+        let job = check_job(model, setup, &args.data, args.max_gap)?
             .suites(&args.suites)
             .notion(notion)
             .until(args.until)

@@ -23,7 +23,7 @@ use crate::journal::{Journal, digest};
 use crate::motors::unknown_motors;
 use crate::remedies::TooWide;
 use crate::robot::{Evidence, Nominal, prepare_for};
-use crate::sorted::Sorted;
+use crate::sorted::{Sorted, WARMTH, unknown_warmth};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -106,17 +106,14 @@ pub fn build(
 /// Refuses a fit of warm-up to recordings that do not say how warm the robot was.
 fn refuse_unknown_warmth(given: &Choices, split: &Split) -> Result<()> {
     let is_fitted = given.fit.as_ref().is_some_and(|groups| groups.contains(&Group::WarmUp));
-    let mut logs = split.kept.iter().chain(&split.held_out).map(|recording| &recording.log);
-    let unknown = logs.find(|log| log.order.is_none() && log.run.temperatures.is_empty());
-    match unknown.filter(|_| is_fitted) {
-        None => Ok(()),
-        Some(log) => Err(Error::Choice {
-            key: "fit",
-            value: format!("warm-up, for {}", log.file.display()),
-            needed: "an index runs.csv, whose column order says how many runs warmed the robot up \
-                     before, or the columns temp1 to tempn",
-        }),
-    }
+    let recordings = split.kept.iter().chain(&split.held_out);
+    let logs: Vec<&RawLog> = recordings.map(|recording| &*recording.log).collect();
+    let by_temperature = logs.iter().all(|log| !log.run.temperatures.is_empty());
+    let unknown = unknown_warmth(&logs, by_temperature);
+    unknown.filter(|_| is_fitted).map_or(Ok(()), |file| {
+        let value = format!("warm-up, for {}", file.display());
+        Err(Error::Choice { key: "fit", value, needed: WARMTH })
+    })
 }
 
 /// A job whose motions are split and whose robot is chosen.
@@ -147,9 +144,9 @@ impl Decided<'_> {
         let has_folds = is_identified && torque != Torque::Compensated;
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
         let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
-        let (motions, from_start) = (split.motion_names(), torque == Torque::Compensated);
+        let (known, from_start) = (split.known(), torque == Torque::Compensated);
         let recordings =
-            Prepared { logs: &logs, motions: &motions, from_start, simulated, origins: None };
+            Prepared { logs: &logs, known: &known, from_start, divides: true, simulated };
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (found, horizons) = found.map_err(|error| error.because(&findings))?;
         let Widened { mut answer, finding, .. } = found;
@@ -169,10 +166,10 @@ impl Decided<'_> {
         let raw: Vec<RawLog> =
             split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
         let held_back = prepare_for(&raw, &robot, torque, settings, cut_off)?;
-        let held_back = Prepared { logs: &held_back, ..recordings };
+        let held_back = Prepared { logs: &held_back, divides: false, ..recordings };
         let horizon = choices.horizon.unwrap_or_default();
-        let whole = split.held_out_motions();
-        let compared = Compared::new(&answer, &recordings, &held_back, horizon, whole)?;
+        let are_whole = split.are_motions_whole();
+        let compared = Compared::new(&answer, &recordings, &held_back, horizon, are_whole)?;
         let Compared { held_out, shown, shown_held_out } = compared;
         findings.extend(read.1.into_iter().chain(held_out.finding(choices)));
         Ok(Built {
@@ -204,7 +201,7 @@ fn sets(
     let mut horizons = choose_equations(chooser, trial, recordings, largest)?;
     let given = chooser.choices.horizon;
     let unfitted = given.unwrap_or_else(|| longest(&horizons, largest).horizon);
-    choose_fit(chooser, trial, unfitted);
+    choose_fit(chooser, trial, horizons.last().map_or(unfitted, |tried| tried.horizon));
     let mut longer = Vec::new();
     if trial.fit.is_some() {
         horizons.retain(|widths| widths.horizon <= unfitted);
@@ -246,13 +243,13 @@ fn sets(
     Ok((found, horizons))
 }
 
-/// Chooses what is fitted. A fit takes long, so that horizons up to `unfitted` \[s\], the longest
-/// that suits the sets without a fit, are not tried again.
-fn choose_fit(chooser: &mut Chooser, trial: &mut Trial, unfitted: f64) {
+/// Chooses what is fitted. A fit takes long, so that the horizons up to `tried` \[s\] were tried
+/// without it.
+fn choose_fit(chooser: &mut Chooser, trial: &mut Trial, tried: f64) {
     let groups = chooser.choices.fit.clone().unwrap_or_default();
     let reason = match groups.is_empty() {
         true => "a fit makes sets smaller, but takes minutes".into(),
-        false => format!("given; horizons up to {unfitted} s were tried without it"),
+        false => format!("given; horizons up to {tried} s were tried without it"),
     };
     let names: Vec<&str> = groups.iter().map(|group| group.name()).collect();
     let value = if names.is_empty() { "nothing".into() } else { names.join(", ") };
@@ -317,6 +314,7 @@ fn preparation(choices: &Choices, torque: Torque) -> Preparation {
         gains: choices.gains.clone(),
         cut_off: choices.cut_off,
         window,
+        max_gap: choices.max_gap,
         columns: choices.columns.clone(),
         log: choices.log.clone(),
     }

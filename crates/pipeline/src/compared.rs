@@ -25,7 +25,8 @@ pub struct HeldOut {
     /// The factor by which the set of each joint would have to grow where it is left furthest, n;
     /// 1 where nothing lies outside.
     pub growth: Vec<f64>,
-    /// Number of motions; `None` where a motion was held out in part only.
+    /// Number of motions that are as long as a window; `None` where a motion was held out in part
+    /// only.
     pub motions: Option<usize>,
     /// The factor by which the radii of X0 and U would have to grow so that the sets enclose all
     /// motions that were held out, 1 where they do; `None` where none suffices.
@@ -46,16 +47,16 @@ pub(crate) struct Compared {
 
 impl Compared {
     /// Compares a model with the recordings that were held out, and chooses windows for pages: the
-    /// windows that decide the sets or leave them, and others evenly spread. `motions` is the
-    /// number of motions that were held out as a whole.
+    /// windows that decide the sets or leave them, and others evenly spread. `are_whole` says
+    /// whether motions were held out as a whole.
     pub(crate) fn new(
         answer: &Answer,
         recordings: &Prepared,
         held_back: &Prepared,
         horizon: f64,
-        motions: Option<usize>,
+        are_whole: bool,
     ) -> Result<Self> {
-        let (held_out, outside) = HeldOut::new(answer, held_back, horizon, motions)?;
+        let (held_out, outside) = HeldOut::new(answer, held_back, horizon, are_whole)?;
         let deciding = &answer.model.deciding_runs.most;
         let deciding = deciding.iter().map(|run| run.file.clone()).collect();
         let shown = some_windows(recordings, horizon, &deciding)?;
@@ -92,7 +93,7 @@ impl HeldOut {
         answer: &Answer,
         recordings: &Prepared,
         horizon: f64,
-        motions: Option<usize>,
+        are_whole: bool,
     ) -> Result<(Self, BTreeSet<String>)> {
         let n = answer.model.robot.joints.len();
         let none = BTreeSet::new();
@@ -103,6 +104,8 @@ impl HeldOut {
             other => other?,
         };
         let count = windows.runs().len();
+        let motions: BTreeSet<_> = windows.runs().iter().map(|run| run.motion.clone()).collect();
+        let motions = are_whole.then_some(motions.len());
         match answer.model.check(windows).run(&Silent) {
             Ok(check) => {
                 let verdict = &check.verdict;
@@ -115,7 +118,10 @@ impl HeldOut {
                     growth: growth(&check, n),
                     motions,
                     factor: check.factor_of_sets(),
-                    next_motion: check.next_motion_in_brief(motions),
+                    next_motion: match check.trust {
+                        Some(_) => check.next_motion_in_brief(motions),
+                        None => "no guarantee: the model knows recordings that are held out".into(),
+                    },
                     failure: None,
                 };
                 Ok((held_out, outside))

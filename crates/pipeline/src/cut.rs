@@ -7,7 +7,7 @@ use reachtube_recordings::{
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::sorted::{motions_of, origins_of, read_logs};
+use crate::sorted::{known_of, read_logs};
 use crate::windows::Prepared;
 
 /// Logs that were cut into windows, and what was done to them.
@@ -57,11 +57,10 @@ impl Cut {
             }
             None => raw.iter().map(|log| unfiltered(log, &[])).collect::<Result<_, _>>()?,
         };
-        let motions = &motions_of(&raw);
+        let known = &known_of(&raw);
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        let origins = &origins_of(&raw);
-        let origins = Some(origins);
-        let prepared = Prepared { logs: &logs, motions, from_start: false, simulated, origins };
+        let prepared =
+            Prepared { logs: &logs, known, from_start: false, divides: false, simulated };
         let windows = prepared.cut(horizon, usize::MAX)?;
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));
@@ -70,6 +69,7 @@ impl Cut {
             gains: Vec::new(),
             cut_off,
             window: Some(horizon),
+            max_gap,
             columns: ColumnSettings::default(),
             log: LogSettings::default(),
         };

@@ -7,6 +7,7 @@ use reachtube_identify::prepare::{LogEntry, RawLog};
 use reachtube_recordings::matching;
 
 use crate::error::{Error, Result};
+use crate::windows::Known;
 
 /// One motion in this many is held out.
 const ONE_IN: usize = 4;
@@ -52,6 +53,7 @@ impl Split {
                 motions.push(recording.motion.clone());
             }
         }
+        let given = given.filter(|given| !given.is_empty());
         let given = given.map(|given| named(given, &recordings, &motions)).transpose()?;
         let (names, reason): (Vec<String>, String) = match (given, motions.len()) {
             (Some(names), _) => (names, "given".into()),
@@ -83,19 +85,21 @@ impl Split {
         Ok(Self { kept, held_out, names, reason })
     }
 
-    /// Returns the number of motions that are held out; `None` where a motion is held out in part.
-    pub(crate) fn held_out_motions(&self) -> Option<usize> {
+    /// Returns whether each motion that is held out is held out as a whole.
+    pub(crate) fn are_motions_whole(&self) -> bool {
         let motions = |recordings: &[Recording]| -> BTreeSet<String> {
             recordings.iter().map(|recording| recording.motion.clone()).collect()
         };
-        let [kept, held_out] = [&self.kept, &self.held_out].map(|recordings| motions(recordings));
-        kept.is_disjoint(&held_out).then_some(held_out.len())
+        motions(&self.kept).is_disjoint(&motions(&self.held_out))
     }
 
-    /// Returns the motion of each recording by its name.
-    pub(crate) fn motion_names(&self) -> BTreeMap<String, String> {
-        let all = self.kept.iter().chain(&self.held_out);
-        all.map(|recording| (recording.log.name.clone(), recording.motion.clone())).collect()
+    /// Returns what is known of each log, by its name.
+    pub(crate) fn known(&self) -> BTreeMap<String, Known> {
+        let known = |Recording { log, motion }: &Recording| {
+            let sha256 = log.run.sha256.clone();
+            (log.name.clone(), Known { motion: motion.clone(), sha256 })
+        };
+        self.kept.iter().chain(&self.held_out).map(known).collect()
     }
 
     /// Holds out the end of each recording of a single motion.
@@ -197,12 +201,14 @@ mod tests {
     fn every_fourth_motion_is_held_out() {
         let split =
             Split::new(recordings(&["a", "a", "b", "c", "d", "e", "f", "g", "h"]), None).unwrap();
-        assert_eq!(split.held_out_motions(), Some(2));
+        assert!(split.are_motions_whole());
         assert_eq!((split.names, split.kept.len()), (vec!["d".into(), "h".into()], 7));
         let split = Split::new(recordings(&["a", "b"]), None).unwrap();
         assert_eq!(split.names, ["b"]);
         let split = Split::new(recordings(&["a", "b"]), Some(&["a".into()])).unwrap();
         assert_eq!(split.kept[0].motion, "b");
+        let split = Split::new(recordings(&["a", "b"]), Some(&[])).unwrap();
+        assert_eq!((split.names, split.reason), (vec!["b".into()], "the last of 2 motions".into()));
         let split = Split::new(recordings(&["a1", "a2", "b"]), Some(&["a*".into()])).unwrap();
         assert_eq!((split.names, split.kept.len()), (vec!["a1".into(), "a2".into()], 1));
     }
@@ -216,7 +222,7 @@ mod tests {
         }
         let split = Split::new(all.clone(), None).unwrap();
         assert_eq!((&split.names[..], split.kept.len()), (&["a3".into(), "b7".into()][..], 6));
-        assert_eq!(split.held_out_motions(), None);
+        assert!(!split.are_motions_whole());
         let again = Split::new(all, Some(&split.names)).unwrap();
         assert_eq!(again.held_out.len(), 2);
     }
@@ -224,7 +230,7 @@ mod tests {
     #[test]
     fn the_end_of_a_single_motion_is_held_out() {
         let split = Split::new(recordings(&["a"]), None).unwrap();
-        assert_eq!(split.held_out_motions(), None);
+        assert!(!split.are_motions_whole());
         let (kept, held_out) = (&split.kept[0].log.run, &split.held_out[0].log.run);
         assert_eq!((kept.len(), held_out.len()), (76, 26));
         assert_eq!((held_out.start, held_out.times[0], held_out.q(0)[0]), (7.5, 0.0, 7.5));

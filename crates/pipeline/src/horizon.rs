@@ -136,12 +136,13 @@ pub(crate) fn try_horizon(
 pub(crate) struct Longest {
     pub found: Widened,
     pub horizon: f64,
-    /// The longer horizons at which the sets of all windows are too wide, the longest first.
+    /// The other horizons at which the sets of all windows are too wide, the longest first.
     pub wide: Vec<HorizonWidths>,
 }
 
 /// Finds the sets over all windows of the longest of the horizons `candidates`, the longest first,
-/// at which none is wider beside the motion than `largest`; of the last one, if there is none.
+/// at which none is wider beside the motion than `largest`; if there is none, of the one at which
+/// the worst set is narrowest.
 ///
 /// # Errors
 ///
@@ -153,7 +154,7 @@ pub(crate) fn longest_of_all(
     largest: f64,
 ) -> Result<Longest> {
     let (last, longer) = candidates.split_last().expect("a horizon was tried");
-    let mut wide = Vec::new();
+    let mut wide: Vec<HorizonWidths> = Vec::new();
     for &horizon in longer {
         // A job that continues does not find sets again that were too wide.
         let mut found = None;
@@ -169,7 +170,19 @@ pub(crate) fn longest_of_all(
         let found = found.map_or_else(|| Widened::new(trial, recordings, horizon), Ok)?;
         return Ok(Longest { found, horizon, wide });
     }
-    Ok(Longest { found: Widened::new(trial, recordings, *last)?, horizon: *last, wide })
+    let found = Widened::new(trial, recordings, *last)?;
+    let (ratios, reason, with_fit) = (ratios(&found.answer), None, trial.fit.is_some());
+    let own = HorizonWidths { horizon: *last, ratios, reason, with_fit };
+    let narrower = (0..wide.len()).filter(|k| wide[*k].worst().1 < own.worst().1);
+    let narrowest = narrower.min_by(|a, b| wide[*a].worst().1.total_cmp(&wide[*b].worst().1));
+    match narrowest.filter(|_| own.worst().1 > largest) {
+        None => Ok(Longest { found, horizon: *last, wide }),
+        Some(narrowest) => {
+            let HorizonWidths { horizon, .. } = wide.remove(narrowest);
+            wide.push(own);
+            Ok(Longest { found: Widened::new(trial, recordings, horizon)?, horizon, wide })
+        }
+    }
 }
 
 /// Returns the ratio of each joint.

@@ -51,17 +51,14 @@ impl Kind {
     }
 }
 
-/// Returns the name of the motion of each recording: recordings of the same motion have the name of
-/// the first. `known` are the names that the index of the recordings gives.
-pub(crate) fn motions(logs: &[&RawLog], known: &[Option<String>]) -> Vec<String> {
+/// Returns the name of the motion of each recording, where the recording has none: recordings of
+/// the same motion have the name of the first.
+pub(crate) fn motions(logs: &[&RawLog]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (index, log) in logs.iter().enumerate() {
-        let same = (0..index).find(|other| is_repeat(&logs[*other].run, &log.run));
-        names.push(match (&known[index], same) {
-            (Some(motion), _) => motion.clone(),
-            (None, Some(other)) => names[other].clone(),
-            (None, None) => log.name.clone(),
-        });
+        let same = || (0..index).find(|other| is_repeat(&logs[*other].run, &log.run));
+        let unnamed = || same().map_or(&log.name, |other| &names[other]);
+        names.push(log.motion.as_ref().unwrap_or_else(unnamed).clone());
     }
     names
 }
@@ -123,14 +120,13 @@ mod tests {
 
     #[test]
     fn repeats_of_a_motion_share_its_name() {
-        let logs = [
+        let mut logs = [
             log("a", run([0.5, 0.3], 0.0)),
             log("b", run([0.5, 0.31], 0.01)),
             log("c", run([0.5, 0.3], 1.5)),
             log("d", run([0.5, 0.3], 0.0)),
         ];
-        let logs: Vec<&RawLog> = logs.iter().collect();
-        let known = [None, None, None, Some("D".to_string())];
-        assert_eq!(motions(&logs, &known), ["a", "a", "c", "D"]);
+        logs[3].motion = Some("D".into());
+        assert_eq!(motions(&logs.iter().collect::<Vec<_>>()), ["a", "a", "c", "D"]);
     }
 }

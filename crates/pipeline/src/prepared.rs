@@ -1,28 +1,33 @@
 use std::path::{Path, PathBuf};
 
 use reachtube_conform::{CheckJob, Model, Setup};
-use reachtube_identify::prepare::PrepareSettings;
+use reachtube_identify::prepare::{PrepareSettings, RawLog};
 use reachtube_recordings::{DataSet, MemoryRuns, Preparation, any_simulated};
 use reachtube_robot::Robot;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::planned::Planned;
 use crate::robot::prepare_for;
-use crate::sorted::{motions_of, origins_of, read_logs};
+use crate::sorted::{WARMTH, known_of, read_logs, unknown_warmth};
 use crate::windows::Prepared;
 
 /// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
 /// CSV file (a planned motion), or for a model that `model` made, logs, which are prepared as its
-/// own were.
+/// own were; `max_gap` is the longest time between two of their samples, s, if it is another.
 ///
 /// # Errors
 ///
 /// Recordings that cannot be opened, or logs as for [`prepared`].
-pub fn check_job(model: Model, setup: Setup, data: &Path) -> Result<CheckJob> {
+pub fn check_job(
+    model: Model,
+    setup: Setup,
+    data: &Path,
+    max_gap: Option<f64>,
+) -> Result<CheckJob> {
     let windows = model
         .preparation
         .as_ref()
-        .map(|known| prepared(&model, known, &[data.to_path_buf()]))
+        .map(|known| prepared(&model, known, &[data.to_path_buf()], max_gap))
         .transpose()?;
     Ok(match windows {
         Some(windows) => CheckJob::new(model, setup, windows),
@@ -34,30 +39,43 @@ pub fn check_job(model: Model, setup: Setup, data: &Path) -> Result<CheckJob> {
     })
 }
 
-/// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`.
+/// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`;
+/// `max_gap` is the longest time between two of their samples, s, if it is another.
 ///
 /// # Errors
 ///
-/// Logs that cannot be read or prepared, and [`Error::NoWindow`](crate::Error::NoWindow) if none is
+/// Logs that cannot be read or prepared, or that do not say how warm the robot was where the model
+/// asks it, and [`Error::NoWindow`](crate::Error::NoWindow) if none is
 /// as long as a window.
-pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> Result<MemoryRuns> {
-    let Preparation { torque, gains, cut_off, window, columns, log } = preparation;
+pub fn prepared(
+    model: &Model,
+    preparation: &Preparation,
+    paths: &[PathBuf],
+    max_gap: Option<f64>,
+) -> Result<MemoryRuns> {
+    let Preparation { torque, gains, cut_off, window, columns, log, .. } = preparation;
     let robot = Robot::from_description(&model.robot)?;
     let settings = PrepareSettings {
         gains: gains.clone(),
         torque: Some(*torque),
+        max_gap: max_gap.or(preparation.max_gap),
         columns: columns.clone(),
         log: log.clone(),
         ..PrepareSettings::default()
     };
     let raw = read_logs(paths, &robot, &settings)?;
+    if let Some(warming) = model.correction.as_ref().filter(|known| known.differs_by_run()) {
+        let logs: Vec<&RawLog> = raw.iter().collect();
+        if let Some(file) = unknown_warmth(&logs, warming.reference_temperatures.is_some()) {
+            let value = file.display().to_string();
+            return Err(Error::Choice { key: "data", value, needed: WARMTH });
+        }
+    }
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    let (from_start, motions) = (window.is_none(), &motions_of(&raw));
+    let (from_start, known) = (window.is_none(), &known_of(&raw));
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-    let origins = &origins_of(&raw);
-    let origins = Some(origins);
-    let prepared = Prepared { logs: &logs, motions, from_start, simulated, origins };
+    let prepared = Prepared { logs: &logs, known, from_start, divides: false, simulated };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),

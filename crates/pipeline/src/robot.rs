@@ -235,13 +235,9 @@ impl Evidence<'_> {
 
     fn unexplained_part(&self, nominal: &Nominal) -> Result<f64> {
         let none = BTreeMap::new();
-        let recordings = Prepared {
-            logs: &nominal.logs,
-            motions: &none,
-            from_start: false,
-            simulated: false,
-            origins: None,
-        };
+        let (from_start, divides, simulated) = (false, false, false);
+        let recordings =
+            Prepared { logs: &nominal.logs, known: &none, from_start, divides, simulated };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
         let answer = match trial.run(windows) {

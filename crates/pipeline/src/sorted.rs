@@ -7,7 +7,7 @@ use std::sync::Arc;
 use reachtube_conform::Finding;
 use reachtube_conform::result::Code;
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
-use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated};
+use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated, index_folder};
 use reachtube_robot::Robot;
 use reachtube_scalar::number::counted;
 
@@ -18,6 +18,11 @@ use crate::findings::warning;
 use crate::held_out::Recording;
 use crate::journal::data_digest;
 use crate::kinds::{Kind, motions};
+use crate::windows::Known;
+
+/// What recordings need that say how warm the robot was.
+pub(crate) const WARMTH: &str = "an index runs.csv, whose column order says how many runs warmed \
+    the robot up before, or the columns temp1 to tempn";
 
 /// Recordings by what they are.
 pub(crate) struct Sorted {
@@ -59,9 +64,7 @@ impl Sorted {
             let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
-        let known: Vec<Option<String>> = moving.iter().map(|log| log.motion.clone()).collect();
-        let shown: Vec<&RawLog> = moving.iter().map(|log| &***log).collect();
-        let names = motions(&shown, &known);
+        let names = motions(&moving.iter().map(|log| &***log).collect::<Vec<&RawLog>>());
         let digest = data_digest(&raw, &names);
         let distinct = names.iter().collect::<BTreeSet<_>>().len();
         chooser.choose(
@@ -116,46 +119,90 @@ fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
 }
 
 /// Reads recordings. Each has the order of its index, and the motion, or else the suite, where the
-/// log names no motion itself.
+/// log names no motion itself. Files of one name have the names of their folders too.
 ///
 /// # Errors
 ///
-/// Recordings that cannot be read.
+/// Recordings that cannot be read, and an index beside them that is wrong.
 pub(crate) fn read_logs(
     paths: &[PathBuf],
     robot: &Robot,
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
     let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
-    let (mut raw, known) = (read(&entries, Path::new(""), robot, settings)?, indexed(paths));
+    let mut raw = read(&entries, Path::new(""), robot, settings)?;
+    let known = indexed(&raw, paths)?;
     for log in &mut raw {
         if let Some(RunEntry { motion, suite, order, .. }) = known.get(&log.file).cloned() {
             log.motion = log.motion.take().or(motion).or(suite);
             log.order.get_or_insert(order);
         }
     }
+    name_apart(&mut raw);
     Ok(raw)
 }
 
-/// Returns the motion of each recording that has one, by the recording's name.
-pub(crate) fn motions_of(raw: &[RawLog]) -> BTreeMap<String, String> {
-    raw.iter().filter_map(|log| Some((log.name.clone(), log.motion.clone()?))).collect()
+/// Gives recordings of one name the names of their folders too, and numbers where these are the
+/// same.
+fn name_apart(raw: &mut [RawLog]) {
+    let mut names: Vec<String> = raw.iter().map(|log| log.name.clone()).collect();
+    for log in raw {
+        if names.iter().filter(|name| **name == log.name).count() < 2 {
+            continue;
+        }
+        let folder = log.file.parent().and_then(Path::file_name).unwrap_or_default();
+        let name = match folder.is_empty() {
+            true => log.name.clone(),
+            false => format!("{}_{}", folder.to_string_lossy(), log.name),
+        };
+        let numbered = (2..).map(|number| format!("{name}_{number}"));
+        let mut all = std::iter::once(name.clone()).chain(numbered);
+        let free = all.find(|name| !names.contains(name)).expect("numbers do not end");
+        // The old name stays in the list, so that the others of this name are told apart too.
+        names.push(free.clone());
+        log.name = free;
+    }
 }
 
-/// Returns the SHA-256 of each recording by its name.
-pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, String> {
-    raw.iter().map(|log| (log.name.clone(), log.run.sha256.clone())).collect()
-}
-
-/// Returns what the indices of folders say of each file.
-fn indexed(folders: &[PathBuf]) -> BTreeMap<PathBuf, RunEntry> {
-    let indices = folders.iter().filter(|folder| folder.join("runs.csv").is_file());
-    let sets = indices.filter_map(|folder| DataSet::open(folder).ok());
-    let entries = |set: DataSet| -> Vec<(PathBuf, RunEntry)> {
-        let runs = set.runs().iter().enumerate();
-        runs.map(|(index, run)| (set.run_name(index), run.clone())).collect()
+/// Returns the file of a recording that does not say how warm the robot was: by the temperatures
+/// of its joints, or else by the order of the runs.
+pub(crate) fn unknown_warmth<'a>(logs: &[&'a RawLog], by_temperature: bool) -> Option<&'a Path> {
+    let is_known = |log: &RawLog| match by_temperature {
+        true => !log.run.temperatures.is_empty(),
+        false => log.order.is_some(),
     };
-    sets.flat_map(entries).collect()
+    logs.iter().find(|log| !is_known(log)).map(|log| &*log.file)
+}
+
+/// Returns what is known of each log, by its name.
+pub(crate) fn known_of(raw: &[RawLog]) -> BTreeMap<String, Known> {
+    let logs = raw.iter().zip(motions(&raw.iter().collect::<Vec<_>>()));
+    let known = |log: &RawLog, motion| Known { motion, sha256: log.run.sha256.clone() };
+    logs.map(|(log, motion)| (log.name.clone(), known(log, motion))).collect()
+}
+
+/// Returns what the indices beside recordings say of each file. One that is wrong is passed over
+/// where it lies above the folders of the recordings and the `given` ones.
+fn indexed(raw: &[RawLog], given: &[PathBuf]) -> Result<BTreeMap<PathBuf, RunEntry>> {
+    let folders: BTreeSet<&Path> = raw.iter().filter_map(|log| index_folder(&log.file)).collect();
+    let is_beside = |folder: &Path| {
+        raw.iter().any(|log| log.file.parent() == Some(folder))
+            || given.iter().any(|given| folder.starts_with(given))
+    };
+    let mut known = BTreeMap::new();
+    for folder in folders {
+        match DataSet::open(folder) {
+            Ok(set) => {
+                let runs = set.runs().iter().enumerate();
+                known.extend(runs.map(|(index, run)| (set.run_name(index), run.clone())));
+            }
+            Err(error) if is_beside(folder) => {
+                return Err(reachtube_conform::Error::from(error).into());
+            }
+            Err(_) => {}
+        }
+    }
+    Ok(known)
 }
 
 #[cfg(test)]
@@ -181,6 +228,22 @@ mod tests {
         let raw = read_logs(&paths, &robot, &PrepareSettings::default()).unwrap();
         let own = raw.iter().map(|log| (log.name.as_str(), log.motion.as_deref(), log.order));
         let own: Vec<_> = own.collect();
-        assert_eq!(own, [("run", Some("A"), Some(3)), ("run", Some("B"), Some(8))]);
+        assert_eq!(own, [("a_run", Some("A"), Some(3)), ("b_run", Some("B"), Some(8))]);
+        let known = known_of(&raw);
+        assert_eq!([&*known["a_run"].motion, &*known["b_run"].motion], ["A", "B"]);
+        assert_ne!(known["a_run"].sha256, known["b_run"].sha256);
+        // The folder above them, and no index.
+        paths.iter().for_each(|path| std::fs::remove_file(path.join("runs.csv")).unwrap());
+        let settings = PrepareSettings::default();
+        let raw = read_logs(&[folder.path().to_path_buf()], &robot, &settings).unwrap();
+        let own: Vec<_> = raw.iter().map(|log| (&*log.name, log.motion.as_deref())).collect();
+        assert_eq!(own, [("a_run", None), ("b_run", None)]);
+        // An index that is wrong is not passed over.
+        std::fs::write(paths[0].join("runs.csv"), "file,suite\nother.csv,A\n").unwrap();
+        let wrong = read_logs(&paths, &robot, &settings).unwrap_err().to_string();
+        assert!(wrong.contains("other.csv"), "{wrong}");
+        let above = folder.path().join("runs.csv");
+        std::fs::rename(paths[0].join("runs.csv"), above).unwrap();
+        assert_eq!(read_logs(&paths, &robot, &settings).unwrap().len(), 2, "nobody gave it");
     }
 }

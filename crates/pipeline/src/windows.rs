@@ -15,20 +15,28 @@ const PARTS: usize = 4;
 pub(crate) struct Prepared<'a> {
     /// The recordings.
     pub logs: &'a [PreparedLog],
-    /// The motion of each, by its name.
-    pub motions: &'a BTreeMap<String, String>,
+    /// What is known of the log of each, by its name.
+    pub known: &'a BTreeMap<String, Known>,
     /// Whether a recording counts from its start, and recordings of a motion are one suite, as
     /// where inputs were commanded; else each is cut into windows, which are suites of their own.
     pub from_start: bool,
+    /// Whether the windows of a single motion count as motions in four parts of it.
+    pub divides: bool,
     /// Whether the recordings are simulated.
     pub simulated: bool,
-    /// The SHA-256 of the log of each, by its name, where they are kept.
-    pub origins: Option<&'a BTreeMap<String, String>>,
+}
+
+/// What is known of a log.
+#[derive(Debug, Clone)]
+pub(crate) struct Known {
+    /// The motion that it shows.
+    pub motion: String,
+    /// Its SHA-256.
+    pub sha256: String,
 }
 
 impl Prepared<'_> {
-    /// Cuts recordings at `horizon` \[s\], at most `most` windows of them evenly spread. The
-    /// windows of a single motion belong to four parts of it.
+    /// Cuts recordings at `horizon` \[s\], at most `most` windows of them evenly spread.
     ///
     /// # Errors
     ///
@@ -61,7 +69,7 @@ impl Prepared<'_> {
         let mut runs = MemoryRuns::default();
         for index in (0..count).map(|k| k * all.len() / count) {
             let window = &all[index];
-            let motion = match is_single && !self.from_start {
+            let motion = match is_single && self.divides && !self.from_start {
                 true => format!("{} part {}", motion(index), 1 + PARTS * index / all.len()),
                 false => motion(index).to_string(),
             };
@@ -71,7 +79,7 @@ impl Prepared<'_> {
                 let entry = runs.push(name, Some(&window.suite), Some(&motion), run);
                 entry.order = window.log.order.unwrap_or(entry.order);
                 entry.simulated = self.simulated;
-                entry.origin = self.origins.and_then(|all| all.get(&window.motion).cloned());
+                entry.origin = self.known.get(&window.motion).map(|log| log.sha256.clone());
             }
         }
         Ok(runs)
@@ -98,7 +106,7 @@ impl Prepared<'_> {
     }
 
     fn motion<'a>(&'a self, log: &'a String) -> &'a str {
-        self.motions.get(log).unwrap_or(log)
+        self.known.get(log).map_or(log, |known| &known.motion)
     }
 }
 

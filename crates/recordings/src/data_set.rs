@@ -14,15 +14,18 @@ const INDEX: &str = "runs.csv";
 /// Number of folders above a recording in which an index may list it.
 const LEVELS: usize = 3;
 
-/// Returns whether an index marks one of some recordings as simulated. The index lies in the
-/// recording's folder, or up to two folders above; the nearest one counts.
+/// Returns the folder with the index that may list a recording: the recording's folder, or up to
+/// two folders above; the nearest one counts.
+#[must_use]
+pub fn index_folder(recording: &Path) -> Option<&Path> {
+    let mut folders = recording.ancestors().skip(1).take(LEVELS);
+    folders.find(|folder| folder.join(INDEX).is_file())
+}
+
+/// Returns whether an index ([`index_folder`]) marks one of some recordings as simulated.
 pub fn any_simulated<'a>(recordings: impl IntoIterator<Item = &'a Path>) -> bool {
     let recordings: BTreeSet<&Path> = recordings.into_iter().collect();
-    let index = |recording: &&'a Path| {
-        let mut folders = recording.ancestors().skip(1).take(LEVELS);
-        folders.find(|folder| folder.join(INDEX).is_file())
-    };
-    let folders: BTreeSet<&Path> = recordings.iter().filter_map(index).collect();
+    let folders: BTreeSet<&Path> = recordings.iter().copied().filter_map(index_folder).collect();
     let sets = folders.into_iter().filter_map(|folder| DataSet::open(folder).ok());
     sets.into_iter().any(|data| {
         let marked = data.runs.iter().filter(|run| run.simulated);

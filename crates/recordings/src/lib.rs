@@ -65,7 +65,7 @@ mod torque;
 mod units;
 mod wraps;
 
-pub use data_set::{DataSet, any_simulated};
+pub use data_set::{DataSet, any_simulated, index_folder};
 pub use decimal::picoseconds;
 pub use defect::{Defect, DefectKind};
 pub use error::{Error, Result};

@@ -21,6 +21,9 @@ pub struct Preparation {
     /// their start, and all recordings of one motion are a suite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
+    /// The longest time between two samples of a log, s, where one was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_gap: Option<f64>,
     /// Columns of CSV files, where their names do not tell.
     #[serde(default, skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,

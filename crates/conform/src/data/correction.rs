@@ -57,7 +57,7 @@ impl InputCorrection {
 
     /// Returns whether runs that share their recorded input may differ in their nominal motion.
     #[must_use]
-    pub(crate) fn differs_by_run(&self) -> bool {
+    pub fn differs_by_run(&self) -> bool {
         self.joints.iter().any(|joint| joint.warm_up != 0.0 || joint.warm_up_coulomb != 0.0)
     }
 

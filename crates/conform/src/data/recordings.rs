@@ -71,6 +71,13 @@ impl Recordings {
         self.suites.iter().filter(is_among).map(|suite| suite.entry.name.as_str()).collect()
     }
 
+    /// Returns whether all runs were cut from one log.
+    pub(crate) fn are_of_one_log(&self) -> bool {
+        let mut origins = self.suites.iter().flat_map(|suite| &suite.runs).map(|run| &run.origin);
+        let first = origins.next().and_then(Option::as_ref);
+        first.is_some() && origins.all(|other| other.as_ref() == first)
+    }
+
     /// Returns the number of runs.
     #[must_use]
     pub fn run_count(&self) -> usize {

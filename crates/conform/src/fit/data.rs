@@ -15,6 +15,11 @@ const MOST_SAMPLES: usize = 6_000;
 const NOT_KEPT: &str = "a fit of warm-up needs each recording, which a fold of recordings that \
     share their input has not kept; fit without warm-up, or read the recordings on one machine";
 
+/// Why warm-up cannot be fitted to recordings of a robot that is always as warm.
+pub(crate) const EQUALLY_WARM: &str = "a fit of warm-up needs recordings of a robot that is not \
+    always as warm, but every recording is the first of its suite; give the column order in \
+    runs.csv, or the columns temp1 to tempn, or fit without warm-up";
+
 /// The recordings of a problem.
 pub(crate) struct Data {
     /// The distinct sample grids, the longest first; a grid that is the beginning of another is not
@@ -56,6 +61,12 @@ impl Data {
         let all = self.tracks.iter().map(of_track).collect::<Option<Vec<_>>>()?;
         let mean = |joint: usize| all.iter().map(|own| own[joint]).sum::<f64>() / all.len() as f64;
         Some((0..all.first()?.len()).map(mean).collect())
+    }
+
+    /// Returns whether every case is the first run of its suite, and no temperature is known.
+    pub(crate) fn are_equally_warm(&self) -> bool {
+        let mut conditions = self.tracks.iter().map(|track| &track.case.condition);
+        self.mean_temperatures().is_none() && conditions.all(|condition| condition.place == 1)
     }
 
     /// Takes the cases of a problem; each run is a case when `by_run`.

@@ -216,6 +216,16 @@ impl FitTask<'_> {
         }
     }
 
+    /// Returns the cost of the smallest sets of all tracks, as a sum over the samples of the fit.
+    ///
+    /// # Errors
+    ///
+    /// As [`model`](Self::model) and [`Program::solve`].
+    pub(crate) fn cost(&self, numbers: &[f64]) -> Result<f64> {
+        let tracks = self.tracks(None);
+        Ok(self.smallest(&self.model(numbers, &tracks)?, &tracks)?.cost)
+    }
+
     /// Returns the cost of the smallest sets of all tracks at every sample; `None` if a nominal
     /// motion runs away.
     ///

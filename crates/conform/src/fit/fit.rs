@@ -7,7 +7,7 @@ use crate::data::problem::Problem;
 use crate::data::settings::{Equations, Method, Weights};
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
-use crate::fit::data::Data;
+use crate::fit::data::{Data, EQUALLY_WARM};
 use crate::fit::evaluation::{FitTask, Smallest};
 use crate::fit::group::{FitSettings, Group};
 use crate::fit::parameters::{Parameters, Quantity};
@@ -126,6 +126,9 @@ impl<'a> Basis<'a> {
         if data.motions.len() < 2 {
             return Err(Error::Fit(one_motion(is_held_out)));
         }
+        if groups.contains(&Group::WarmUp) && data.are_equally_warm() {
+            return Err(Error::Fit(EQUALLY_WARM.into()));
+        }
         let speeds = speeds_of_friction(given, steering, groups);
         Ok(Self { given, groups, other, data, speeds })
     }
@@ -203,12 +206,9 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
             kinds.push(kind);
         }
     }
-    let (start, tracks) = (fit.parameters.start(), fit.tracks(None));
+    let start = fit.parameters.start();
     let every_sample = FitTask { stride: 1, ..fit.clone() };
-    let cost = |fit: &FitTask, numbers: &[f64]| -> Result<f64> {
-        Ok(fit.smallest(&fit.model(numbers, &tracks)?, &tracks)?.cost)
-    };
-    let [pull, whole_pull] = [pull * cost(fit, &start)?, pull * cost(&every_sample, &start)?];
+    let [pull, whole_pull] = [pull * fit.cost(&start)?, pull * every_sample.cost(&start)?];
     let wanted = |free, effort| Wanted { left_out: None, pull, free, effort };
     let of_held = |held: Option<Kind>| {
         let first = match held {
@@ -219,7 +219,7 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
             None => start.clone(),
         };
         let mut found = fit.search(&wanted(all.clone(), SearchEffort::WHOLE), &first)?;
-        found.value = cost(&every_sample, &found.numbers)? + whole_pull * size(&found.numbers);
+        found.value = every_sample.cost(&found.numbers)? + whole_pull * size(&found.numbers);
         Ok(found)
     };
     let held = kinds.iter().map(|kind| Some(*kind)).filter(|_| kinds.len() > 1);
@@ -313,10 +313,11 @@ fn record(
     let setup = fit.parameters.setup();
     let groups = found.map_or_else(Vec::new, |_| choice.groups(fit.parameters));
     let numbers = found.map_or_else(|| vec![0.0; fit.parameters.len()], <[f64]>::to_vec);
+    let pull = choice.pull * fit.cost(&fit.parameters.start())?;
     let cost_without = |group: &Group| {
         let wanted = Wanted {
             left_out: None,
-            pull: choice.pull * identified.cost,
+            pull,
             free: fit.parameters.except(&[&choice.dropped[..], &[*group]].concat()),
             effort: SearchEffort::QUICK,
         };
@@ -327,7 +328,10 @@ fn record(
         // Without a group a nominal motion may run away until the others are fitted again.
         let again = fit.search(&wanted, &without);
         let again = again.or_else(|_| fit.search(&wanted, &start));
-        let cost_without = again.map_or(Ok(None), |again| fit.whole_cost(&again.numbers))?;
+        let cost_without = match again {
+            Err(Error::RunsAway { .. }) => None,
+            again => fit.whole_cost(&again?.numbers)?,
+        };
         Ok(GroupCost { group: *group, cost_without })
     };
     let cases = || fit.data.tracks.iter().map(|track| &track.case);

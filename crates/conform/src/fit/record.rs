@@ -270,6 +270,10 @@ impl FittedParameter {
     /// Returns whether the fit moved the value by more than 0.05 % of it.
     #[must_use]
     pub fn has_changed(&self) -> bool {
+        // The factor of several coefficients counts also where the one that is shown is 0.
+        if let Some(factor) = self.factor {
+            return (factor - 1.0).abs() > 5e-4;
+        }
         let size = self.identified.abs().max(self.fitted.abs()).max(1e-6);
         (self.fitted - self.identified).abs() > 5e-4 * size
     }

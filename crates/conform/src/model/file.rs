@@ -353,10 +353,10 @@ impl Model {
         if !self.data.are_listed() {
             return None;
         }
-        let suites = self.data.suites.iter().flat_map(|suite| &suite.runs);
-        let seen = &self.robot.identified_from;
-        let fitted: HashSet<&str> =
-            suites.map(|run| run.sha256.as_str()).chain(seen.iter().map(String::as_str)).collect();
+        let runs = self.data.suites.iter().flat_map(|suite| &suite.runs);
+        let own = runs.flat_map(|run| std::iter::once(&run.sha256).chain(&run.origin));
+        let seen = own.chain(&self.robot.identified_from);
+        let fitted: HashSet<&str> = seen.map(String::as_str).collect();
         let mut runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
         if runs.any(|run| run.is_among(&fitted)) {
             return Some(true);

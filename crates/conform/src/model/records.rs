@@ -85,6 +85,9 @@ pub struct RunRecord {
     pub file: String,
     /// SHA-256 of the file.
     pub sha256: String,
+    /// SHA-256 of the log that it was cut from, if it was cut from one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<String>,
     /// Number of samples used.
     pub samples: usize,
     /// Time from the first to the last of them, s.
@@ -146,6 +149,7 @@ impl DataRecord {
         let run = |run: &RunSummary| RunRecord {
             file: problem.entry(run.index).file.clone(),
             sha256: run.sha256.clone(),
+            origin: run.origin.clone(),
             samples: run.samples,
             duration: run.duration,
         };

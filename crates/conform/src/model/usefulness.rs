@@ -26,13 +26,16 @@ impl Model {
     }
 
     /// Returns the model with what was done to logs before its sets were found. That is no longer a
-    /// remedy of any warning.
+    /// remedy of any warning. A scenario bound is an indication where a cut-off or the horizon was
+    /// chosen from the logs.
     #[must_use]
     pub fn with_preparation(mut self, preparation: Preparation) -> Self {
         let has_input = preparation.torque != Torque::Compensated;
         for warning in self.warnings.iter_mut().filter(|_| has_input) {
             warning.remedy.take_if(|remedy| remedy.setting == "torque");
         }
-        Self { preparation: Some(preparation), ..self }.sealed()
+        let are_chosen = preparation.cut_off.is_some() || preparation.window.is_none();
+        let trust = if are_chosen { self.trust.of_chosen_settings() } else { self.trust };
+        Self { preparation: Some(preparation), trust, ..self }.sealed()
     }
 }

@@ -36,7 +36,8 @@ pub(crate) fn trends(problem: &Problem) -> Vec<Trend> {
 }
 
 fn of_suite(suite: &Suite, joints: usize) -> Vec<Trend> {
-    let runs: Vec<&RunSummary> = suite.sample().collect();
+    let mut runs: Vec<&RunSummary> = suite.sample().collect();
+    runs.sort_by_key(|run| run.condition.place);
     let count = runs.len();
     let stride = runs.iter().map(|run| run.marks.stride).max().unwrap_or(1);
     let last = runs.iter().map(|run| run.marks.last(stride)).min().unwrap_or(0);

@@ -68,6 +68,9 @@ impl Trust {
     pub fn of_fit(problem: &Problem, tight: &[Witness]) -> Self {
         let recordings = problem.recordings();
         let motions = Motions::new(recordings);
+        if recordings.are_of_one_log() {
+            return Self::of_one_log("scenario");
+        }
         let count = |least: f64| {
             let rows = tight.iter().filter(|witness| witness.radius > least);
             motions.count_of(rows.map(|witness| witness.suite.as_str()))
@@ -197,10 +200,24 @@ impl Trust {
         (average * (self.motions as f64 + 1.0)).round() as usize
     }
 
+    /// Returns the bound of a model whose settings were chosen from its recordings: an indication,
+    /// if it was a scenario bound, whose theorem asks for fixed settings.
+    pub(crate) fn of_chosen_settings(self) -> Self {
+        if self.kind != Some(TrustKind::Guarantee) || self.average_probability.is_some() {
+            return self;
+        }
+        let condition = "its theorem asks for fixed settings, and some were chosen from the logs";
+        let basis = format!("{}; {condition}", self.basis);
+        Self { basis, kind: Some(TrustKind::Indication), ..self }
+    }
+
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
     #[must_use]
     pub(crate) fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
         let motions = Motions::new(recordings);
+        if recordings.are_of_one_log() {
+            return Self::of_one_log("hold-out");
+        }
         let violating = verdict.suites.iter().filter(|suite| !suite.holds());
         let violating = motions.count_of(violating.map(|suite| suite.suite.as_str()));
         let bound = clopper_pearson(motions.count(), violating, 1.0 - CONFIDENCE);
@@ -217,6 +234,13 @@ impl Trust {
             basis: format!("{name} for independent motions{}", motions.caveat()),
             kind: Some(TrustKind::Guarantee),
         }
+    }
+
+    /// Returns that there is no bound, since windows of one log are not independent.
+    fn of_one_log(bound: &str) -> Self {
+        let basis =
+            format!("no {bound} bound: all windows are of one log, and count as one motion");
+        Self::unknown(1, basis)
     }
 
     /// Returns that there is no guarantee, and why.

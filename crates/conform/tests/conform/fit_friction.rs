@@ -3,8 +3,10 @@
 use crate::common::{conform_all, two_joints};
 use crate::fit::{PLAIN, Truth, fitted, problem, record};
 use reachtube_conform::fit::{Fitted, FittedParameter};
-use reachtube_conform::{Group, Keep, Model, Problem, Settings, Setup, Silent, Tube, check};
-use reachtube_recordings::Torque;
+use reachtube_conform::{
+    FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, fit,
+};
+use reachtube_recordings::{MemoryRuns, ReadOptions, RunSource, Torque};
 use reachtube_robot::Robot;
 
 #[test]
@@ -35,6 +37,21 @@ fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
     let other = same.with_setup(none);
     let verdict = check(&read, &other, &Tube::new(&other, read.sets()).unwrap()).unwrap();
     assert!(!verdict.verdict.conformant);
+}
+
+#[test]
+fn warm_up_is_not_fitted_to_a_robot_that_is_always_as_warm() {
+    let recorded = self::record(&two_joints(), PLAIN, 2);
+    let mut runs = MemoryRuns::default();
+    for (index, entry) in recorded.runs().iter().enumerate() {
+        let run = recorded.read(index, &ReadOptions::default()).unwrap();
+        runs.push(&entry.file, Some(&entry.file), entry.motion.as_deref(), run);
+    }
+    let setup = Setup::new(two_joints(), Settings::new(Torque::Compensated, 2)).unwrap();
+    let problem = Problem::read(setup, Box::new(runs), &[], Keep::All, &Silent).unwrap();
+    let settings = FitSettings { groups: vec![Group::WarmUp], pull: Some(0.02) };
+    let refused = fit(&problem, &settings, &Silent).unwrap_err().to_string();
+    assert!(refused.contains("every recording is the first of its suite"), "{refused}");
 }
 
 #[test]

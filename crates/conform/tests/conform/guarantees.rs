@@ -5,7 +5,7 @@ use reachtube_conform::next_motion::TrustKind;
 use reachtube_conform::result::Code;
 use reachtube_conform::settings::{InitialLimit, NominalStart, Weights};
 use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent};
-use reachtube_recordings::{MemoryRuns, Run};
+use reachtube_recordings::{MemoryRuns, Preparation, Run, Torque};
 use reachtube_robot::Robot;
 
 use crate::common::{Disturbed, Random, Recorded, conform_all, grid, read, two_joints};
@@ -93,13 +93,55 @@ fn windows_of_a_log_that_identified_the_robot_have_no_bound() {
         let run = Run::new(2, times, states, torques).unwrap();
         runs.push(motion, Some(motion), Some(motion), run).origin = Some(motion.repeat(64));
     }
-    let trust = |calibrate: &[&str]| {
-        let setup = Setup::new(robot.clone(), settings(calibrate)).unwrap();
-        let runs = Box::new(runs.clone());
-        conform_all(&Problem::read(setup, runs, &[], Keep::Needed, &Silent).unwrap()).trust
+    let problem = |names: &[&str], calibrate: &[&str]| {
+        let (setup, runs) = (Setup::new(robot.clone(), settings(calibrate)), runs.clone());
+        let names: Vec<String> = names.iter().map(ToString::to_string).collect();
+        Problem::read(setup.unwrap(), Box::new(runs), &names, Keep::Needed, &Silent).unwrap()
     };
+    let trust = |calibrate: &[&str]| conform_all(&problem(&[], calibrate)).trust;
     assert_eq!(trust(&["b", "c"]).average_probability, Some(1.0 / 3.0));
     assert!(trust(&["c", "d"]).basis.contains("motions that were held out here (d)"));
+    // The model knows the logs that its own windows were cut from.
+    let fit = problem(&["a", "b"], &[]);
+    let model = Model::new(&fit, &conform_all(&fit));
+    let knows = |name: &str| model.knows_of(problem(&[name], &[]).recordings());
+    assert_eq!([knows("b"), knows("c"), knows("d")], [true, false, true].map(Some));
+}
+
+/// Windows of one log are not independent, whatever their motions are called.
+#[test]
+fn windows_of_one_log_have_no_bound() {
+    let (times, mut random, robot) = (grid(0.01, 20), Random(7), two_joints());
+    let arm = Disturbed { robot: &robot, times: &times, start: 0.01, input: 0.5 };
+    let recorded: Vec<Recorded> = SUITES.iter().map(|_| arm.record(&mut random)).collect();
+    let kinds = |origin: fn(&str) -> String| {
+        let mut runs = MemoryRuns::default();
+        for (motion, Recorded { times, states, torques }) in SUITES.iter().zip(&recorded) {
+            let run = Run::new(2, times.clone(), states.clone(), torques.clone()).unwrap();
+            let entry = runs.push(motion, Some(motion), Some(motion), run);
+            entry.origin = Some(origin(motion));
+        }
+        let setup = Setup::new(robot.clone(), settings(&[])).unwrap();
+        let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
+        let model = Model::new(&problem, &conform_all(&problem));
+        let preparation = |window, cut_off| Preparation {
+            torque: Torque::Motor,
+            gains: vec![],
+            cut_off,
+            window,
+            max_gap: None,
+            columns: Default::default(),
+            log: Default::default(),
+        };
+        let with = |known| model.clone().with_preparation(known).trust;
+        let (given, chosen) =
+            (with(preparation(Some(0.2), None)), preparation(Some(0.2), Some(9.0)));
+        assert_eq!(given, model.trust);
+        (given.kind, with(chosen).kind, given.motions)
+    };
+    assert_eq!(kinds(|_| "e".repeat(64)), (None, None, 1));
+    let [guarantee, indication] = [TrustKind::Guarantee, TrustKind::Indication].map(Some);
+    assert_eq!(kinds(|motion| motion.repeat(64)), (guarantee, indication, SUITES.len()));
 }
 
 /// The scenario bound is a guarantee only where its theorem's conditions are met.

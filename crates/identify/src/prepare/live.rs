@@ -329,6 +329,7 @@ mod tests {
                     gains,
                     cut_off: Some(5.0),
                     window: None,
+                    max_gap: None,
                     columns: Default::default(),
                     log: Default::default(),
                 };
