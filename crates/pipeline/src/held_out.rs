@@ -93,7 +93,7 @@ impl Split {
         motions(&self.kept).is_disjoint(&motions(&self.held_out))
     }
 
-    /// Returns what is known of each log, by its name.
+    /// Returns the motion and the SHA-256 of each log, by its name.
     pub(crate) fn known(&self) -> BTreeMap<String, Known> {
         let known = |Recording { log, motion }: &Recording| {
             let sha256 = log.run.sha256.clone();

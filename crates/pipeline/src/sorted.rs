@@ -158,7 +158,7 @@ fn name_apart(raw: &mut [RawLog]) {
         let numbered = (2..).map(|number| format!("{name}_{number}"));
         let mut all = std::iter::once(name.clone()).chain(numbered);
         let free = all.find(|name| !names.contains(name)).expect("numbers do not end");
-        // The old name stays in the list, so that the others of this name are told apart too.
+        // The old name stays in the list, so that the others of this name are renamed too.
         names.push(free.clone());
         log.name = free;
     }
@@ -174,7 +174,7 @@ pub(crate) fn unknown_warmth<'a>(logs: &[&'a RawLog], by_temperature: bool) -> O
     logs.iter().find(|log| !is_known(log)).map(|log| &*log.file)
 }
 
-/// Returns what is known of each log, by its name.
+/// Returns the motion and the SHA-256 of each log, by its name.
 pub(crate) fn known_of(raw: &[RawLog]) -> BTreeMap<String, Known> {
     let logs = raw.iter().zip(motions(&raw.iter().collect::<Vec<_>>()));
     let known = |log: &RawLog, motion| Known { motion, sha256: log.run.sha256.clone() };
@@ -244,6 +244,6 @@ mod tests {
         assert!(wrong.contains("other.csv"), "{wrong}");
         let above = folder.path().join("runs.csv");
         std::fs::rename(paths[0].join("runs.csv"), above).unwrap();
-        assert_eq!(read_logs(&paths, &robot, &settings).unwrap().len(), 2, "nobody gave it");
+        assert_eq!(read_logs(&paths, &robot, &settings).unwrap().len(), 2, "it lies above what was given");
     }
 }

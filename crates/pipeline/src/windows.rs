@@ -15,7 +15,7 @@ const PARTS: usize = 4;
 pub(crate) struct Prepared<'a> {
     /// The recordings.
     pub logs: &'a [PreparedLog],
-    /// What is known of the log of each, by its name.
+    /// The log of each, by its name.
     pub known: &'a BTreeMap<String, Known>,
     /// Whether a recording counts from its start, and recordings of a motion are one suite, as
     /// where inputs were commanded; else each is cut into windows, which are suites of their own.
@@ -26,7 +26,7 @@ pub(crate) struct Prepared<'a> {
     pub simulated: bool,
 }
 
-/// What is known of a log.
+/// Where windows come from.
 #[derive(Debug, Clone)]
 pub(crate) struct Known {
     /// The motion that it shows.
