@@ -244,6 +244,10 @@ mod tests {
         assert!(wrong.contains("other.csv"), "{wrong}");
         let above = folder.path().join("runs.csv");
         std::fs::rename(paths[0].join("runs.csv"), above).unwrap();
-        assert_eq!(read_logs(&paths, &robot, &settings).unwrap().len(), 2, "it lies above what was given");
+        assert_eq!(
+            read_logs(&paths, &robot, &settings).unwrap().len(),
+            2,
+            "it lies above what was given"
+        );
     }
 }
