@@ -147,7 +147,7 @@ def conform(
         Within 0.2 s, with nothing written.
     """
     given = among(locals())
-    recordings, preparation, before = _cut(robot, data, torque, horizon, until, max_gap)
+    recordings, preparation, before = _cut(robot, data, torque, horizon, until, max_gap, calibrate)
     if preparation is not None:
         given["torque"] = "compensated"
     settings = of_conformance(robot, **given)
@@ -174,6 +174,7 @@ def _cut(
     horizon: float | None,
     until: float | None,
     max_gap: float | None,
+    calibrate: Sequence[str],
 ) -> tuple[_reachtube.Source, str | None, list[str]]:
     """Return recordings, cut into windows where there is a horizon, what was done, and notes."""
     if horizon is None:
@@ -188,6 +189,7 @@ def _cut(
         torque,
         real("horizon", horizon),
         None if max_gap is None else real("max_gap", max_gap),
+        names(calibrate),
         *native_of_logs(data),
     )
 

@@ -255,6 +255,7 @@ def cut(
     torque: str,
     horizon: float,
     max_gap: float | None,
+    calibrate: list[str],
     paths: list[str],
     runs: Source | None,
 ) -> tuple[Source, str, list[str]]: ...

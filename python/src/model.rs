@@ -131,7 +131,7 @@ pub(crate) fn prepared(
 /// Cuts logs into windows for a conformance. Returns them, what was done to the logs as JSON, and
 /// notes.
 #[pyfunction]
-#[pyo3(signature = (robot, abstraction, torque, horizon, max_gap, paths, runs))]
+#[pyo3(signature = (robot, abstraction, torque, horizon, max_gap, calibrate, paths, runs))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn cut(
     py: Python<'_>,
@@ -140,6 +140,7 @@ pub(crate) fn cut(
     torque: String,
     horizon: f64,
     max_gap: Option<f64>,
+    calibrate: Vec<String>,
     paths: Vec<PathBuf>,
     runs: Option<PyRef<'_, NativeSource>>,
 ) -> PyResult<(NativeSource, String, Vec<String>)> {
@@ -150,7 +151,7 @@ pub(crate) fn cut(
             .map_err(|error| Failure::Setting(format!("torque: {error}")))?;
         let logs = LogsOnDisk::new(paths, runs.as_ref())?;
         let robot = basis.robot()?.into_owned();
-        let cut = Cut::new(&robot, torque, horizon, max_gap, &logs.paths)
+        let cut = Cut::new(&robot, torque, horizon, max_gap, &calibrate, &logs.paths)
             .map_err(|error| logs.named(error))?;
         let notes: Vec<String> = cut.notes.iter().map(|note| logs.renamed(note)).collect();
         Ok((cut, notes))

@@ -144,9 +144,9 @@ impl Decided<'_> {
         let has_folds = is_identified && torque != Torque::Compensated;
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
         let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
-        let (known, from_start) = (split.known(), torque == Torque::Compensated);
+        let (origins, from_start) = (split.origins(), torque == Torque::Compensated);
         let recordings =
-            Prepared { logs: &logs, known: &known, from_start, divides: true, simulated };
+            Prepared { logs: &logs, origins: &origins, from_start, divides: true, simulated };
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (found, horizons) = found.map_err(|error| error.because(&findings))?;
         let Widened { mut answer, finding, .. } = found;
@@ -243,8 +243,8 @@ fn sets(
     Ok((found, horizons))
 }
 
-/// Chooses what is fitted. A fit takes long, so that the horizons up to `tried` \[s\] were tried
-/// without it.
+/// Chooses what is fitted. Since a fit takes long, horizons up to `tried` \[s\] were tried without
+/// it.
 fn choose_fit(chooser: &mut Chooser, trial: &mut Trial, tried: f64) {
     let groups = chooser.choices.fit.clone().unwrap_or_default();
     let reason = match groups.is_empty() {

@@ -118,9 +118,11 @@ impl HeldOut {
                     growth: growth(&check, n),
                     motions,
                     factor: check.factor_of_sets(),
-                    next_motion: match check.trust {
-                        Some(_) => check.next_motion_in_brief(motions),
-                        None => "no guarantee: the model knows recordings that are held out".into(),
+                    next_motion: match (&check.trust, are_whole) {
+                        (None, true) => {
+                            "no guarantee: the robot was identified from what is held out".into()
+                        }
+                        _ => check.next_motion_in_brief(motions),
                     },
                     failure: None,
                 };

@@ -1,14 +1,16 @@
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off, prepare, unfiltered};
 use reachtube_recordings::{
     ColumnSettings, LogSettings, MemoryRuns, Preparation, RunSource, Torque, any_simulated,
+    matching,
 };
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::sorted::{known_of, read_logs};
-use crate::windows::Prepared;
+use crate::sorted::{origins_of, read_logs};
+use crate::windows::{Origin, Prepared};
 
 /// Logs that were cut into windows, and what was done to them.
 #[derive(Debug, Clone)]
@@ -24,8 +26,9 @@ pub struct Cut {
 impl Cut {
     /// Reads logs and cuts them into windows of `horizon` \[s\]. Before that, torques of motors or
     /// links are filtered with a cut-off that is chosen from the logs, and the robot's gravity and
-    /// dry friction are taken off them; compensated torques stay as they are. `max_gap` is the
-    /// longest time between two samples, s.
+    /// dry friction are taken off them; compensated torques stay as they are. Logs of the motions
+    /// `calibrate`, by name or pattern, choose no cut-off. `max_gap` is the longest time between two
+    /// samples, s.
     ///
     /// # Errors
     ///
@@ -36,6 +39,7 @@ impl Cut {
         torque: Torque,
         horizon: f64,
         max_gap: Option<f64>,
+        calibrate: &[String],
         paths: &[PathBuf],
     ) -> Result<Self> {
         robot.check_physical()?;
@@ -44,10 +48,10 @@ impl Cut {
         let raw = read_logs(paths, robot, &settings)?;
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
-        let is_filtered = torque != Torque::Compensated;
-        let cut_off = match is_filtered {
-            true => Some(rounded(cut_off(&raw.iter().collect::<Vec<&RawLog>>(), &settings)?)),
-            false => None,
+        let origins = &origins_of(&raw);
+        let cut_off = match torque {
+            Torque::Compensated => None,
+            _ => Some(rounded(cut_off(&without(&raw, origins, calibrate), &settings)?)),
         };
         let logs = match cut_off {
             Some(cut_off) => {
@@ -57,10 +61,9 @@ impl Cut {
             }
             None => raw.iter().map(|log| unfiltered(log, &[])).collect::<Result<_, _>>()?,
         };
-        let known = &known_of(&raw);
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         let prepared =
-            Prepared { logs: &logs, known, from_start: false, divides: false, simulated };
+            Prepared { logs: &logs, origins, from_start: false, divides: false, simulated };
         let windows = prepared.cut(horizon, usize::MAX)?;
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));
@@ -77,6 +80,21 @@ impl Cut {
     }
 }
 
+/// Returns the logs of all motions but those that `calibrate` names; all, if it names every one,
+/// which a calibration refuses.
+fn without<'a>(
+    raw: &'a [RawLog],
+    origins: &BTreeMap<String, Origin>,
+    calibrate: &[String],
+) -> Vec<&'a RawLog> {
+    let motions = || origins.values().map(|origin| origin.motion.as_str());
+    let named: BTreeSet<&str> =
+        calibrate.iter().flat_map(|name| matching(name, motions())).collect();
+    let others: Vec<&RawLog> =
+        raw.iter().filter(|log| !named.contains(&*origins[&log.name].motion)).collect();
+    if others.is_empty() { raw.iter().collect() } else { others }
+}
+
 /// Rounds a cut-off to 0.1 Hz, so that it is short in files.
 pub(crate) fn rounded(cut_off: f64) -> f64 {
     (10.0 * cut_off).round() / 10.0
@@ -89,6 +107,39 @@ mod tests {
     use reachtube_recordings::ReadOptions;
 
     use super::*;
+
+    fn hinge() -> Robot {
+        let robot = "schema_version = 1\nname = \"hinge\"\n[[joint]]\nname = \"hinge\"\n\
+                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
+                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
+                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
+        Robot::from_toml(robot, "hinge").unwrap()
+    }
+
+    #[test]
+    fn motions_that_calibrate_choose_no_cut_off() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, pace) in [("slow", 2.0), ("fast", 30.0)] {
+            let mut log = String::from("t,q1,qd1,tau1\n");
+            for k in 0..1001 {
+                let t = 0.01 * f64::from(k);
+                let (sin, cos) = (pace * t).sin_cos();
+                let [q, qd, tau] = [0.1 * sin, 0.1 * pace * cos, -pace * sin];
+                writeln!(log, "{t:.2},{q:.9},{qd:.9},{tau:.9}").unwrap();
+            }
+            std::fs::write(folder.path().join(format!("{name}.csv")), log).unwrap();
+        }
+        let cut_off = |calibrate: &[&str], path: &str| {
+            let calibrate: Vec<String> = calibrate.iter().map(ToString::to_string).collect();
+            let paths = [folder.path().join(path)];
+            let cut = Cut::new(&hinge(), Torque::Motor, 0.25, None, &calibrate, &paths).unwrap();
+            cut.preparation.cut_off.unwrap()
+        };
+        let [all, slow] = [cut_off(&[], ""), cut_off(&[], "slow.csv")];
+        assert_ne!(all, slow);
+        assert_eq!(cut_off(&["fast"], ""), slow);
+        assert_eq!(cut_off(&["*"], ""), all, "a conformance refuses it");
+    }
 
     #[test]
     fn windows_have_the_order_of_the_index_and_the_temperatures_of_the_log() {
@@ -104,13 +155,9 @@ mod tests {
             writeln!(index, "run{order}.csv,A,{order}").unwrap();
         }
         std::fs::write(folder.path().join("runs.csv"), index).unwrap();
-        let robot = "schema_version = 1\nname = \"hinge\"\n[[joint]]\nname = \"hinge\"\n\
-                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
-                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
-                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
-        let robot = Robot::from_toml(robot, "hinge").unwrap();
+        let robot = hinge();
         let paths = [folder.path().to_path_buf()];
-        let cut = Cut::new(&robot, Torque::Compensated, 0.25, None, &paths).unwrap();
+        let cut = Cut::new(&robot, Torque::Compensated, 0.25, None, &[], &paths).unwrap();
         let windows = cut.windows.runs();
         assert_eq!(windows.len(), 8);
         for (index, window) in windows.iter().enumerate() {

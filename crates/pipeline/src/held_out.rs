@@ -7,7 +7,7 @@ use reachtube_identify::prepare::{LogEntry, RawLog};
 use reachtube_recordings::matching;
 
 use crate::error::{Error, Result};
-use crate::windows::Known;
+use crate::windows::Origin;
 
 /// One motion in this many is held out.
 const ONE_IN: usize = 4;
@@ -94,12 +94,12 @@ impl Split {
     }
 
     /// Returns the motion and the SHA-256 of each log, by its name.
-    pub(crate) fn known(&self) -> BTreeMap<String, Known> {
-        let known = |Recording { log, motion }: &Recording| {
+    pub(crate) fn origins(&self) -> BTreeMap<String, Origin> {
+        let origin = |Recording { log, motion }: &Recording| {
             let sha256 = log.run.sha256.clone();
-            (log.name.clone(), Known { motion: motion.clone(), sha256 })
+            (log.name.clone(), Origin { motion: motion.clone(), sha256 })
         };
-        self.kept.iter().chain(&self.held_out).map(known).collect()
+        self.kept.iter().chain(&self.held_out).map(origin).collect()
     }
 
     /// Holds out the end of each recording of a single motion.

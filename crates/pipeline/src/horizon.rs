@@ -154,7 +154,7 @@ pub(crate) fn longest_of_all(
     largest: f64,
 ) -> Result<Longest> {
     let (last, longer) = candidates.split_last().expect("a horizon was tried");
-    let mut wide: Vec<HorizonWidths> = Vec::new();
+    let mut wide = Vec::new();
     for &horizon in longer {
         // A job that continues does not find sets again that were too wide.
         let mut found = None;
@@ -171,18 +171,17 @@ pub(crate) fn longest_of_all(
         return Ok(Longest { found, horizon, wide });
     }
     let found = Widened::new(trial, recordings, *last)?;
-    let (ratios, reason, with_fit) = (ratios(&found.answer), None, trial.fit.is_some());
-    let own = HorizonWidths { horizon: *last, ratios, reason, with_fit };
-    let narrower = (0..wide.len()).filter(|k| wide[*k].worst().1 < own.worst().1);
-    let narrowest = narrower.min_by(|a, b| wide[*a].worst().1.total_cmp(&wide[*b].worst().1));
-    match narrowest.filter(|_| own.worst().1 > largest) {
-        None => Ok(Longest { found, horizon: *last, wide }),
-        Some(narrowest) => {
-            let HorizonWidths { horizon, .. } = wide.remove(narrowest);
-            wide.push(own);
-            Ok(Longest { found: Widened::new(trial, recordings, horizon)?, horizon, wide })
-        }
-    }
+    let (ratios, with_fit) = (ratios(&found.answer), trial.fit.is_some());
+    wide.push(HorizonWidths { horizon: *last, ratios, reason: None, with_fit });
+    let HorizonWidths { horizon, .. } = wide.remove(narrowest(&wide));
+    let found = if horizon == *last { found } else { Widened::new(trial, recordings, horizon)? };
+    Ok(Longest { found, horizon, wide })
+}
+
+/// Returns the index of the horizon at which the worst set is narrowest, the last one of several.
+fn narrowest(tried: &[HorizonWidths]) -> usize {
+    let order = |a: &usize, b: &usize| tried[*a].worst().1.total_cmp(&tried[*b].worst().1);
+    (0..tried.len()).rev().min_by(order).expect("a horizon was tried")
 }
 
 /// Returns the ratio of each joint.
@@ -223,6 +222,8 @@ mod tests {
         assert_eq!(longest(&tried, 0.5).horizon, 0.1);
         assert_eq!(longest(&tried, 0.1).horizon, 0.05);
         assert_eq!(longest(&[widths(0.05, 3.0), widths(0.1, 2.0)], 0.5).horizon, 0.1);
+        assert_eq!(narrowest(&[widths(0.2, 0.6), widths(0.1, 0.55), widths(0.05, 0.7)]), 1);
+        assert_eq!(narrowest(&[widths(0.2, 0.6), widths(0.1, 0.6)]), 1);
         let lost = HorizonWidths { ratios: vec![], ..widths(1.0, 0.0) };
         assert_eq!(lost.worst().1, f64::INFINITY);
     }

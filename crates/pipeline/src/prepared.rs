@@ -8,7 +8,7 @@ use reachtube_robot::Robot;
 use crate::error::{Error, Result};
 use crate::planned::Planned;
 use crate::robot::prepare_for;
-use crate::sorted::{WARMTH, known_of, read_logs, unknown_warmth};
+use crate::sorted::{WARMTH, origins_of, read_logs, unknown_warmth};
 use crate::windows::Prepared;
 
 /// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
@@ -44,9 +44,8 @@ pub fn check_job(
 ///
 /// # Errors
 ///
-/// Logs that cannot be read or prepared, or that do not say how warm the robot was where the model
-/// asks it, and [`Error::NoWindow`](crate::Error::NoWindow) if none is
-/// as long as a window.
+/// Logs that cannot be read or prepared, or that do not say how warm the robot was although the
+/// model needs it, and [`Error::NoWindow`](crate::Error::NoWindow) if none is as long as a window.
 pub fn prepared(
     model: &Model,
     preparation: &Preparation,
@@ -72,10 +71,10 @@ pub fn prepared(
         }
     }
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    let (from_start, known) = (window.is_none(), &known_of(&raw));
+    let (from_start, origins) = (window.is_none(), &origins_of(&raw));
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-    let prepared = Prepared { logs: &logs, known, from_start, divides: false, simulated };
+    let prepared = Prepared { logs: &logs, origins, from_start, divides: false, simulated };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),

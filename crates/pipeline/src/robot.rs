@@ -237,7 +237,7 @@ impl Evidence<'_> {
         let none = BTreeMap::new();
         let (from_start, divides, simulated) = (false, false, false);
         let recordings =
-            Prepared { logs: &nominal.logs, known: &none, from_start, divides, simulated };
+            Prepared { logs: &nominal.logs, origins: &none, from_start, divides, simulated };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
         let answer = match trial.run(windows) {

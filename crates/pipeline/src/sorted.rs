@@ -18,9 +18,9 @@ use crate::findings::warning;
 use crate::held_out::Recording;
 use crate::journal::data_digest;
 use crate::kinds::{Kind, motions};
-use crate::windows::Known;
+use crate::windows::Origin;
 
-/// What recordings need that say how warm the robot was.
+/// What says of recordings how warm the robot was.
 pub(crate) const WARMTH: &str = "an index runs.csv, whose column order says how many runs warmed \
     the robot up before, or the columns temp1 to tempn";
 
@@ -134,8 +134,10 @@ pub(crate) fn read_logs(
     let known = indexed(&raw, paths)?;
     for log in &mut raw {
         if let Some(RunEntry { motion, suite, order, .. }) = known.get(&log.file).cloned() {
+            let is_in_order = suite.is_some();
             log.motion = log.motion.take().or(motion).or(suite);
-            log.order.get_or_insert(order);
+            // Lines without a suite are in no order.
+            log.order = log.order.or(is_in_order.then_some(order));
         }
     }
     name_apart(&mut raw);
@@ -175,14 +177,14 @@ pub(crate) fn unknown_warmth<'a>(logs: &[&'a RawLog], by_temperature: bool) -> O
 }
 
 /// Returns the motion and the SHA-256 of each log, by its name.
-pub(crate) fn known_of(raw: &[RawLog]) -> BTreeMap<String, Known> {
+pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, Origin> {
     let logs = raw.iter().zip(motions(&raw.iter().collect::<Vec<_>>()));
-    let known = |log: &RawLog, motion| Known { motion, sha256: log.run.sha256.clone() };
-    logs.map(|(log, motion)| (log.name.clone(), known(log, motion))).collect()
+    let origin = |log: &RawLog, motion| Origin { motion, sha256: log.run.sha256.clone() };
+    logs.map(|(log, motion)| (log.name.clone(), origin(log, motion))).collect()
 }
 
-/// Returns what the indices beside recordings say of each file. One that is wrong is passed over
-/// where it lies above the folders of the recordings and the `given` ones.
+/// Returns what indices say of each file. An index that is wrong is an error, unless it lies above
+/// the `given` folders and the recordings' own.
 fn indexed(raw: &[RawLog], given: &[PathBuf]) -> Result<BTreeMap<PathBuf, RunEntry>> {
     let folders: BTreeSet<&Path> = raw.iter().filter_map(|log| index_folder(&log.file)).collect();
     let is_beside = |folder: &Path| {
@@ -229,9 +231,9 @@ mod tests {
         let own = raw.iter().map(|log| (log.name.as_str(), log.motion.as_deref(), log.order));
         let own: Vec<_> = own.collect();
         assert_eq!(own, [("a_run", Some("A"), Some(3)), ("b_run", Some("B"), Some(8))]);
-        let known = known_of(&raw);
-        assert_eq!([&*known["a_run"].motion, &*known["b_run"].motion], ["A", "B"]);
-        assert_ne!(known["a_run"].sha256, known["b_run"].sha256);
+        let origins = origins_of(&raw);
+        assert_eq!([&*origins["a_run"].motion, &*origins["b_run"].motion], ["A", "B"]);
+        assert_ne!(origins["a_run"].sha256, origins["b_run"].sha256);
         // The folder above them, and no index.
         paths.iter().for_each(|path| std::fs::remove_file(path.join("runs.csv")).unwrap());
         let settings = PrepareSettings::default();

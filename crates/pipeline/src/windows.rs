@@ -16,7 +16,7 @@ pub(crate) struct Prepared<'a> {
     /// The recordings.
     pub logs: &'a [PreparedLog],
     /// The log of each, by its name.
-    pub known: &'a BTreeMap<String, Known>,
+    pub origins: &'a BTreeMap<String, Origin>,
     /// Whether a recording counts from its start, and recordings of a motion are one suite, as
     /// where inputs were commanded; else each is cut into windows, which are suites of their own.
     pub from_start: bool,
@@ -26,9 +26,9 @@ pub(crate) struct Prepared<'a> {
     pub simulated: bool,
 }
 
-/// Where windows come from.
+/// The log of a recording.
 #[derive(Debug, Clone)]
-pub(crate) struct Known {
+pub(crate) struct Origin {
     /// The motion that it shows.
     pub motion: String,
     /// Its SHA-256.
@@ -79,7 +79,7 @@ impl Prepared<'_> {
                 let entry = runs.push(name, Some(&window.suite), Some(&motion), run);
                 entry.order = window.log.order.unwrap_or(entry.order);
                 entry.simulated = self.simulated;
-                entry.origin = self.known.get(&window.motion).map(|log| log.sha256.clone());
+                entry.origin = self.origins.get(&window.motion).map(|log| log.sha256.clone());
             }
         }
         Ok(runs)
@@ -106,7 +106,7 @@ impl Prepared<'_> {
     }
 
     fn motion<'a>(&'a self, log: &'a String) -> &'a str {
-        self.known.get(log).map_or(log, |known| &known.motion)
+        self.origins.get(log).map_or(log, |origin| &origin.motion)
     }
 }
 

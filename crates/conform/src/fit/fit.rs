@@ -313,7 +313,10 @@ fn record(
     let setup = fit.parameters.setup();
     let groups = found.map_or_else(Vec::new, |_| choice.groups(fit.parameters));
     let numbers = found.map_or_else(|| vec![0.0; fit.parameters.len()], <[f64]>::to_vec);
-    let pull = choice.pull * fit.cost(&fit.parameters.start())?;
+    let pull = match groups.is_empty() {
+        true => 0.0,
+        false => choice.pull * fit.cost(&fit.parameters.start())?,
+    };
     let cost_without = |group: &Group| {
         let wanted = Wanted {
             left_out: None,

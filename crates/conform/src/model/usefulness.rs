@@ -26,8 +26,8 @@ impl Model {
     }
 
     /// Returns the model with what was done to logs before its sets were found. That is no longer a
-    /// remedy of any warning. A scenario bound is an indication where a cut-off or the horizon was
-    /// chosen from the logs.
+    /// remedy of any warning. A scenario bound becomes an indication where the cut-off or the
+    /// horizon was chosen from the logs.
     #[must_use]
     pub fn with_preparation(mut self, preparation: Preparation) -> Self {
         let has_input = preparation.torque != Torque::Compensated;

@@ -68,7 +68,7 @@ impl Trust {
     pub fn of_fit(problem: &Problem, tight: &[Witness]) -> Self {
         let recordings = problem.recordings();
         let motions = Motions::new(recordings);
-        if recordings.are_of_one_log() {
+        if motions.count() > 1 && recordings.are_of_one_log() {
             return Self::of_one_log("scenario");
         }
         let count = |least: f64| {
@@ -200,8 +200,8 @@ impl Trust {
         (average * (self.motions as f64 + 1.0)).round() as usize
     }
 
-    /// Returns the bound of a model whose settings were chosen from its recordings: an indication,
-    /// if it was a scenario bound, whose theorem asks for fixed settings.
+    /// Returns the bound of a model whose settings were chosen from its recordings. The theorem of
+    /// the scenario bound asks for fixed settings, so that it becomes an indication.
     pub(crate) fn of_chosen_settings(self) -> Self {
         if self.kind != Some(TrustKind::Guarantee) || self.average_probability.is_some() {
             return self;
@@ -215,7 +215,7 @@ impl Trust {
     #[must_use]
     pub(crate) fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
         let motions = Motions::new(recordings);
-        if recordings.are_of_one_log() {
+        if motions.count() > 1 && recordings.are_of_one_log() {
             return Self::of_one_log("hold-out");
         }
         let violating = verdict.suites.iter().filter(|suite| !suite.holds());
@@ -236,10 +236,10 @@ impl Trust {
         }
     }
 
-    /// Returns that there is no bound, since windows of one log are not independent.
+    /// Returns that there is no bound, since motions that were cut from one log are not
+    /// independent.
     fn of_one_log(bound: &str) -> Self {
-        let basis =
-            format!("no {bound} bound: all windows are of one log, and count as one motion");
+        let basis = format!("no {bound} bound: all motions are parts of one log");
         Self::unknown(1, basis)
     }
 

@@ -93,7 +93,7 @@ fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
             let paths = std::slice::from_ref(&args.data.data);
             let (torque, max_gap) = (settings.torque, args.data.max_gap);
             let robot = basis.robot()?.into_owned();
-            let cut = Cut::new(&robot, torque, horizon, max_gap, paths)?;
+            let cut = Cut::new(&robot, torque, horizon, max_gap, &settings.calibrate, paths)?;
             output::notes(&cut.notes);
             let settings = Settings { torque: Torque::Compensated, ..settings };
             let job = Job::new(basis, cut.windows, settings.torque).settings(settings);
