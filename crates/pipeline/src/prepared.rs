@@ -66,7 +66,7 @@ pub fn prepared(
     if let Some(warming) = model.correction.as_ref().filter(|known| known.differs_by_run()) {
         let logs: Vec<&RawLog> = raw.iter().collect();
         if let Some(file) = unknown_warmth(&logs, warming.reference_temperatures.is_some()) {
-            let value = file.display().to_string();
+            let value = format!("{}, for a model whose friction warms up", file.display());
             return Err(Error::Choice { key: "data", value, needed: WARMTH });
         }
     }

@@ -16,8 +16,8 @@ const NOT_KEPT: &str = "a fit of warm-up needs each recording, which a fold of r
     share their input has not kept; fit without warm-up, or read the recordings on one machine";
 
 /// Why warm-up cannot be fitted to recordings of a robot that is always as warm.
-pub(crate) const EQUALLY_WARM: &str = "a fit of warm-up needs recordings of a robot that is not \
-    always as warm, but every recording is the first of its suite; give the column order in \
+pub(crate) const EQUALLY_WARM: &str = "a fit of warm-up needs a robot that warms up between \
+    recordings, but every recording is the first of its suite; give the column order in \
     runs.csv, or the columns temp1 to tempn, or fit without warm-up";
 
 /// The recordings of a problem.
