@@ -32,7 +32,9 @@ pub(crate) fn truth(robot: &Robot, q: &[f64], qd: &[f64], u: &[f64]) -> Vec<f64>
 }
 
 pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().map(f64::abs).fold(0.0, f64::max)
+    let largest = values.into_iter().map(f64::abs).max_by(f64::total_cmp).unwrap();
+    assert!(!largest.is_nan());
+    largest
 }
 
 pub(crate) fn model(robot: &Robot, kind: ModelKind, order: u32) -> PolynomialModel {

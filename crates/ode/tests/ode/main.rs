@@ -8,7 +8,9 @@ mod ensemble;
 /// Returns the largest |a_i - b_i| of two vectors.
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    let largest = a.iter().zip(b).map(|(a, b)| (a - b).abs()).max_by(f64::total_cmp).unwrap();
+    assert!(!largest.is_nan(), "{a:?} {b:?}");
+    largest
 }
 
 /// Returns the order of convergence: the slope of log error over log step between the first and the

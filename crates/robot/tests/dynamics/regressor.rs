@@ -63,12 +63,14 @@ proptest! {
         let inside = |x: &f64| x + 0.99 * pick * radius;
         let boxes = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(wide).collect::<Vec<_>>());
         let at = [&sin, &cos, &qd, &qdd].map(|x| x.iter().map(inside).collect::<Vec<_>>());
-        let (mut outer, mut value) = (vec![Interval::ZERO; 10 * n * n], vec![0.0; 10 * n * n]);
+        let (mut outer, mut value) =
+            (vec![Interval::ENTIRE; 10 * n * n], vec![f64::NAN; 10 * n * n]);
         let mut ws = RegressorWorkspace::new(&robot);
         robot.inertial_regressor(&boxes[0], &boxes[1], &boxes[2], &boxes[3], &mut ws, &mut outer);
         let mut ws = RegressorWorkspace::new(&robot);
         robot.inertial_regressor(&at[0], &at[1], &at[2], &at[3], &mut ws, &mut value);
         prop_assert!(outer.iter().zip(&value).all(|(o, v)| o.contains(*v)));
+        prop_assert!(outer.iter().all(|o| o.width().is_finite()));
     }
 }
 
