@@ -71,7 +71,8 @@ fn the_nominal_motion_is_that_of_the_robot_and_the_sets_hold_what_is_left() {
     let (problem, by_robot): (Problem, Conformance) = found(Equations::Robot);
     assert!(by_robot.cost < 0.2 * by_model.cost, "{} {}", by_robot.cost, by_model.cost);
     assert!(by_robot.sets.input_set.radius.iter().all(|radius| *radius < 0.3));
-    assert!(by_robot.nominal_explains.iter().flatten().all(|part| *part > 0.99));
+    let parts: Vec<f64> = by_robot.nominal_explains.iter().flatten().copied().collect();
+    assert!(parts.len() == 4 && parts.iter().all(|part| *part > 0.99), "{parts:?}");
 
     // The file of the model says so, and checks as the model did.
     let model = Model::new(&problem, &by_robot);
@@ -83,12 +84,15 @@ fn the_nominal_motion_is_that_of_the_robot_and_the_sets_hold_what_is_left() {
 
     // The nominal motion, by another way: the robot under the recorded inputs, integrated.
     let times = grid(0.004, SAMPLES);
-    for (suite, pace) in reach(&problem, &by_robot.tube).unwrap().iter().zip([3.0f64, 4.0]) {
+    let reached = reach(&problem, &by_robot.tube).unwrap();
+    assert_eq!(reached.len(), 2);
+    for (suite, pace) in reached.iter().zip([3.0f64, 4.0]) {
         let input = |&t: &f64| (0..2).map(move |j| 4.0 * (pace * t + f64::from(j)).cos());
         let inputs: Vec<f64> = times.iter().flat_map(input).collect();
         let expected = simulated(&robot, &[0.0, 1.0, 0.0, 0.0], &times, &inputs);
+        assert_eq!(suite.nominal.len(), expected.len());
         let apart = suite.nominal.iter().zip(&expected).map(|(a, b)| (a - b).abs());
-        let furthest = apart.fold(0.0, f64::max);
+        let furthest = apart.max_by(f64::total_cmp).unwrap();
         assert!(furthest < 0.01, "{}: {furthest}", suite.suite);
     }
 }

@@ -118,7 +118,9 @@ fn furthest_outside(smallest: &Model, reached: &Answer) -> f64 {
         let x0 = &smallest.initial_set;
         let start = [reach.nominal[0] + inside(x0, 0, a), reach.nominal[1] + inside(x0, 1, b)];
         let states = turned(start, |_| inside(&smallest.input_set, 0, w));
+        assert!(states.len() == reach.lower.len() && states.iter().all(|x| x.is_finite()));
         for (i, x) in states.iter().enumerate() {
+            assert!(reach.lower[i] <= reach.upper[i], "{} {}", reach.lower[i], reach.upper[i]);
             furthest = furthest.max(reach.lower[i] - x).max(x - reach.upper[i]);
         }
     }

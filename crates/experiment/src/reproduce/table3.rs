@@ -286,7 +286,8 @@ mod tests {
     }
 
     fn largest<'a>(rows: impl Iterator<Item = &'a Table3Row>) -> f64 {
-        rows.filter_map(|row| row.deviation).fold(0.0, |most, own| most.max(own.abs()))
+        let deviations = rows.filter_map(|row| row.deviation.map(f64::abs));
+        deviations.max_by(f64::total_cmp).unwrap()
     }
 
     /// Friction at rest and its slopes in the load used to bias gravity by up to 38 standard
@@ -302,15 +303,14 @@ mod tests {
         let worst = largest(table.part(Part::Gravity));
         assert!(worst < 3.5, "{worst} standard errors: {:#?}", table.rows);
         // The paper's rows of gravity are known to a few per cent.
-        for row in table.part(Part::Gravity).filter(|row| row.paper.is_some()) {
-            assert!((row.estimate / row.truth - 1.0).abs() < 0.04, "{row:?}");
-        }
+        let near = |row: &Table3Row, part: f64| (row.estimate / row.truth - 1.0).abs() < part;
+        let printed = table.part(Part::Gravity).filter(|row| row.paper.is_some());
+        assert_eq!(printed.filter(|row| near(row, 0.04)).count(), 4, "{:#?}", table.rows);
         // Warming and the Stribeck effect move Coulomb friction beyond its standard error.
         let worst = largest(table.part(Part::Friction));
         assert!(worst > 4.0, "{worst} standard errors");
-        for row in table.part(Part::Friction).filter(|row| row.name.starts_with("a1")) {
-            assert!((row.estimate / row.truth - 1.0).abs() < 0.1, "{row:?}");
-        }
+        let offsets = table.part(Part::Friction).filter(|row| row.name.starts_with("a1 "));
+        assert_eq!(offsets.filter(|row| near(row, 0.1)).count(), 6, "{:#?}", table.rows);
     }
 
     /// An arm with the friction of Table III, without delay: all that is left is the noise.
@@ -325,12 +325,13 @@ mod tests {
         let size = (found.iter().map(|own| own * own).sum::<f64>() / found.len() as f64).sqrt();
         assert!(found.len() >= 45 && size < 1.5, "{size} standard errors, {:#?}", table.rows);
         assert!(largest(bodies()) < 4.0, "{:#?}", table.rows);
-        for row in table.part(Part::Friction) {
-            assert_eq!(row.effects, [Effect::Ripple]);
-            // The offsets of Coulomb friction and the linear part of viscous friction.
-            if row.truth.abs() > 1.5 {
-                assert!((row.estimate / row.truth - 1.0).abs() < 0.04, "{row:?}");
-            }
+        assert_eq!(table.part(Part::Friction).count(), 66);
+        assert!(table.part(Part::Friction).all(|row| row.effects == [Effect::Ripple]));
+        // The offsets of Coulomb friction and the linear part of viscous friction.
+        let large = || table.part(Part::Friction).filter(|row| row.truth.abs() > 1.5);
+        assert!(large().count() >= 24, "{:#?}", table.rows);
+        for row in large() {
+            assert!((row.estimate / row.truth - 1.0).abs() < 0.04, "{row:?}");
         }
     }
 }

@@ -310,7 +310,8 @@ mod tests {
             .iter()
             .zip(&disturbed.coulomb)
             .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
+            .max_by(f64::total_cmp)
+            .unwrap();
         assert!(off < 0.1, "{off}");
         assert!(fit("j", &samples[..40], 1.0).is_none());
     }

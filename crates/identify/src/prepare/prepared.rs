@@ -263,7 +263,7 @@ mod tests {
             // The stop itself is a step of the input, which the filter softens.
             let away = |k: &usize| (log.time(*k) - 2.5 * PI).abs() > 0.5;
             let off = |k: usize| (input(k) - expected(log.time(k))).abs();
-            (0..log.len()).filter(away).map(off).fold(0.0, f64::max)
+            (0..log.len()).filter(away).map(off).max_by(f64::total_cmp).unwrap()
         };
         let (compensated, as_recorded) = (furthest(Some(&robot)), furthest(None));
         // A tenth of the friction, and more than all of it.

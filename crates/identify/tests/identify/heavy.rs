@@ -46,7 +46,10 @@ fn with(robot: &Robot, change: impl Fn(&mut RobotDescription)) -> Robot {
 fn worst_ratio(found: &Identification) -> f64 {
     assert!(found.held_out);
     let joints = found.validation.last().unwrap().joints.iter();
-    joints.map(|j| j.relative.unwrap() / j.relative_plain.unwrap()).fold(0.0, f64::max)
+    let ratios: Vec<f64> =
+        joints.map(|j| j.relative.unwrap() / j.relative_plain.unwrap()).collect();
+    assert!(ratios.len() == 6 && ratios.iter().all(|ratio| ratio.is_finite()), "{ratios:?}");
+    ratios.into_iter().fold(0.0, f64::max)
 }
 
 #[test]
