@@ -39,8 +39,11 @@ fn assert_near(x: Interval, value: f64, tolerance: f64, what: &str) {
 
 /// Fails unless all entries of the gains agree within `relative` times the largest.
 fn assert_same(left: &[IntervalMatrix], right: &[IntervalMatrix], relative: f64) {
+    assert_eq!(left.len(), right.len());
     let largest = right.last().unwrap().iter().map(|x| x.mag()).fold(0.0, f64::max);
+    assert!(largest.is_finite());
     for (k, (left, right)) in left.iter().zip(right).enumerate() {
+        assert_eq!(left.shape(), right.shape());
         for (x, y) in left.iter().zip(right) {
             assert!(x.hull(*y).width() <= relative * largest, "sample {k}: {x:?} and {y:?}");
             assert!(x.intersection(*y).is_some(), "sample {k}: {x:?} and {y:?}");

@@ -1,31 +1,19 @@
 //! Simulated behaviours of random polynomial systems.
 
-use rayon::prelude::*;
 use reachtube_ode::{Ensemble, InitialValueProblem};
 use reachtube_reach::FlowpipeMethod::Linearisation;
 
-use crate::simulated_case::{Field, SLACK, random_case};
+use crate::simulated_case::{Field, SLACK, random_case, simulate_random_cases};
 
 #[test]
 fn none_of_200_000_behaviours_of_random_systems_leaves_its_sets() {
-    behaviours_of_random_systems_stay_inside(1_000);
+    simulate_random_cases(1_000, |_| Linearisation);
 }
 
 #[test]
 #[ignore = "takes long: a million behaviours"]
 fn none_of_a_million_behaviours_of_random_systems_leaves_its_sets() {
-    behaviours_of_random_systems_stay_inside(5_000);
-}
-
-/// Simulates `runs` behaviours of each of 200 systems.
-fn behaviours_of_random_systems_stay_inside(runs: usize) {
-    let used: Vec<f64> = (1..=200_u64)
-        .into_par_iter()
-        .map(|seed| random_case(seed, Linearisation).simulate(runs, seed))
-        .collect();
-    // Some behaviours come close to the sides of the sets, so the sets are not merely large.
-    let close = used.iter().filter(|used| **used > 0.9).count();
-    assert!(close > 100, "{close} of 200 came close");
+    simulate_random_cases(5_000, |_| Linearisation);
 }
 
 #[test]
@@ -47,13 +35,14 @@ fn simulations_are_within_the_assumed_error() {
             let mut end = vertex.clone();
             let mut ensemble = Ensemble::<f64>::new(vertex.len());
             let keep = |_: usize, _: usize, x: &[f64]| end.copy_from_slice(x);
-            let _ = ensemble.integrate(
+            let outcomes = ensemble.integrate(
                 &mut Field::new(&case.map, case.angles),
                 &times,
                 substeps,
                 &[run],
                 keep,
             );
+            assert!(outcomes.iter().all(|outcome| outcome.is_reached()), "{seed}");
             end
         };
         for (coarse, fine) in end(case.substeps).iter().zip(end(8 * case.substeps)) {

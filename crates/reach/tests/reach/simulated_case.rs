@@ -2,6 +2,7 @@
 
 use std::sync::Mutex;
 
+use rayon::prelude::*;
 use reachtube_ode::{Ensemble, InitialValueProblem, VectorField};
 use reachtube_reach::{
     Flowpipe, FlowpipeMethod, FlowpipeSettings, Hyperrectangle, PolynomialSystem, TimeGrid,
@@ -73,6 +74,7 @@ impl Case {
     pub(crate) fn simulate(&self, runs: usize, seed: u64) -> f64 {
         let mut random = Random::new(seed);
         let steps = self.flowpipe.len() - 1;
+        assert!(steps > 0, "{:?}", self.flowpipe.outcome());
         let times: Vec<f64> =
             (0..=steps * self.parts).map(|k| k as f64 * self.step / self.parts as f64).collect();
         let kinds: Vec<bool> = (0..runs).map(|run| run % 2 == 0).collect();
@@ -183,6 +185,22 @@ pub(crate) fn random_case(seed: u64, method: FlowpipeMethod) -> Case {
         parts: 2,
         substeps: 1,
     }
+}
+
+/// Simulates `runs` behaviours of each of 200 random cases.
+pub(crate) fn simulate_random_cases(runs: usize, method: impl Fn(u64) -> FlowpipeMethod + Sync) {
+    let simulated: Vec<(bool, f64)> = (1..=200_u64)
+        .into_par_iter()
+        .map(|seed| {
+            let case = random_case(seed, method(seed));
+            (case.flowpipe.is_reached(), case.simulate(runs, seed))
+        })
+        .collect();
+    let reached = simulated.iter().filter(|(is_reached, _)| *is_reached).count();
+    assert!(reached >= 150, "{reached} of 200 reach the end");
+    // Some behaviours come close to the sides of the sets, so the sets are not merely large.
+    let close = simulated.iter().filter(|(_, used)| *used > 0.9).count();
+    assert!(close > 100, "{close} of 200 came close");
 }
 
 /// Computes the flowpipe of a published problem and checks that it contains a thousand simulated
