@@ -147,7 +147,8 @@ fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
         assert!(same(record.identified_cost, before.cost) && same(record.cost, after.cost));
         let elbow = record.parameters.iter().find(|p| p.joint == 2 && p.group == Group::Viscous);
         assert!((elbow.unwrap().fitted - 1.6).abs() < 0.05, "{:?}", record.parameters);
-        assert!(record.torque.iter().all(|torque| torque.fitted < torque.identified));
+        let closer = record.torque.iter().all(|torque| torque.fitted < torque.identified);
+        assert!(record.torque.len() == 2 && closer, "{:?}", record.torque);
         // The same answer again.
         let again = fitted(&problem, &[Group::Inertia, Group::Viscous], Some(0.001));
         assert_eq!(record, again.record);
@@ -185,6 +186,7 @@ fn standard_errors_of_the_description_stand_beside_the_values() {
     let setup = Setup::new(robot, problem.settings().clone()).unwrap();
     let groups = [Group::Inertia, Group::Viscous];
     let Fitted { problem, record, .. } = fitted(&problem.with_setup(setup), &groups, Some(0.02));
+    assert!(record.parameters.len() >= 4, "{:?}", record.parameters);
     for parameter in &record.parameters {
         let is_viscous = parameter.group == Group::Viscous;
         assert_eq!(parameter.standard_error, is_viscous.then_some(0.1), "{parameter:?}");
@@ -219,8 +221,8 @@ fn a_payload_is_found_on_links_that_are_described_by_their_centre_of_mass() {
 fn a_right_model_is_left_alone_and_bad_settings_are_refused() {
     let right = problem(PLAIN, 3, |_| {});
     let record = fitted(&right, &[Group::Inertia, Group::Viscous], Some(0.05)).record;
-    let far = record.parameters.iter().filter(|p| (p.fitted / p.identified - 1.0).abs() > 0.05);
-    assert_eq!(far.count(), 0, "{record:?}");
+    let near = record.parameters.iter().all(|p| (p.fitted / p.identified - 1.0).abs() <= 0.05);
+    assert!(record.parameters.len() >= 4 && near, "{record:?}");
     let refused = |problem: &Problem, groups: &[Group], pull| {
         let settings = FitSettings { groups: groups.to_vec(), pull };
         fit(problem, &settings, &Silent).unwrap_err().to_string()

@@ -55,6 +55,7 @@ fn calibrated_sets_are_those_of_the_other_motions_scaled_by_the_largest_gauge() 
     let found = conform_all(&problem);
     let calibration = found.calibration.clone().unwrap();
     assert_eq!(calibration.fitted, ["a", "b"]);
+    assert_eq!(calibration.gauges.len(), 2);
     for (gauge, expected) in calibration.gauges.iter().zip(gauges) {
         assert!((gauge.gauge / expected - 1.0).abs() < 1e-9, "{gauge:?} for {expected}");
     }
@@ -183,7 +184,9 @@ fn sensors_limit_what_calibration_may_scale() {
     let fitted = conform_all(&read(&two_joints(), folder.path(), &["a", "b"], &alone));
     let calibration = found.calibration.unwrap();
     assert!(calibration.input_only && calibration.factor > 1.2 && found.verdict.conformant);
-    for (scaled, own) in found.sets.initial_set.radius.iter().zip(&fitted.sets.initial_set.radius) {
+    let (scaled, own) = (&found.sets.initial_set.radius, &fitted.sets.initial_set.radius);
+    assert_eq!([scaled.len(), own.len()], [4; 2]);
+    for (scaled, own) in scaled.iter().zip(own) {
         assert!((scaled - own).abs() < 1e-12);
     }
 }

@@ -241,6 +241,7 @@ fn stronger_notions_cost_more_and_are_proved_for_each_model() {
             let points = exact.points.unwrap();
             assert_eq!(exact.conformant, notion == Notion::Exact, "{kind:?} {notion:?}");
             assert_eq!(points.outside > 0, notion != Notion::Exact);
+            assert_eq!(points.worst.is_some(), points.outside > 0);
             if let Some(worst) = points.worst {
                 assert!(worst.value > worst.reach && worst.combination.contains('q'), "{worst:?}");
             }

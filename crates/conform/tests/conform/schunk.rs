@@ -95,6 +95,7 @@ fn gauges_are_those_of_an_independent_program_and_warming_up_is_named() {
     let folder = common::shared("schunk_lwa4p");
     let (_, found) = conform_with(&folder, &["A", "B", "D", "E"], |_| {});
     let gauges: Vec<f64> = found.left_out.iter().map(|left| left.gauge.unwrap()).collect();
+    assert_eq!(gauges.len(), 4);
     for (gauge, expected) in gauges.iter().zip([1.6, 2.2, 2.0, 3.0]) {
         assert!((gauge - expected).abs() < 0.05, "{gauges:?}");
     }
@@ -173,8 +174,8 @@ fn plain_excess(dynamics: &Dynamics, model: &Model, runs: &[Run]) -> Vec<(usize,
         let radius: DVector<f64> =
             e.abs() * vector(&sets.initial_set.radius) + &gain * vector(&sets.input_set.radius);
         for i in 0..12 {
-            let furthest =
-                runs.iter().map(|run| (run.state(k)[i] - centre[i]).abs()).fold(0.0, f64::max);
+            let apart = runs.iter().map(|run| (run.state(k)[i] - centre[i]).abs());
+            let furthest = apart.max_by(f64::total_cmp).unwrap();
             rows.push((k, i, furthest - radius[i]));
         }
         x = &phi * x + &gamma * vector(runs[0].torque(k));

@@ -78,10 +78,12 @@ fn assert_rates(found: &Identification, by: WarmingBy, [coulomb, viscous]: [f64;
             }
         }
     }
+    assert!(joints.len() == 6 && off.len() >= 6, "{joints:?}");
     let within = off.iter().filter(|off| **off < 2.0).count();
     assert!(off.iter().all(|off| *off < 4.0), "{off:?}");
     assert!(10 * within >= 8 * off.len(), "{off:?}");
     let laws = found.laws.as_ref().unwrap();
+    assert_eq!([laws.before.len(), laws.after.len()], [6; 2]);
     for (before, after) in laws.before.iter().zip(&laws.after) {
         assert!(laws.held_out && after < before, "{laws:?}");
     }
@@ -140,9 +142,10 @@ fn a_law_that_is_not_there_changes_next_to_nothing() {
     let found = lab.identify(&geometry, &settings(WarmingChoice::Temperature, false));
     let joints = &found.warming.as_ref().unwrap().joints;
     let chosen = joints.iter().filter(|joint| joint.law.is_some()).count();
-    assert!(chosen <= 2, "{joints:?}");
+    assert!(joints.len() == 6 && chosen <= 2, "{joints:?}");
     assert!(joints.iter().all(|joint| joint.held_out[1] <= joint.held_out[0]));
     let laws = found.laws.unwrap();
+    assert_eq!([laws.before.len(), laws.after.len()], [6; 2]);
     assert!(laws.before.iter().zip(&laws.after).all(|(a, b)| *b < 1.01 * a), "{laws:?}");
     // Without the setting, nothing of the laws is computed.
     let plain = lab.identify(&geometry, &settings(WarmingChoice::None, false));

@@ -30,7 +30,9 @@ fn no_worse_than_one_joint_fit(found: &Identification, settings: &str) {
                  model.saturating = false";
     let plain = identified("ur10e", &format!("{}\n{plain}", dynamic_only.join("\n")));
     let joints = |found: &Identification| found.validation.last().unwrap().joints.clone();
-    for (joint, plain) in joints(found).iter().zip(&joints(&plain)) {
+    let (joints, plain) = (joints(found), joints(&plain));
+    assert_eq!([joints.len(), plain.len()], [6; 2]);
+    for (joint, plain) in joints.iter().zip(&plain) {
         assert!(joint.residual < 1.01 * plain.residual, "{joint:?} {plain:?}");
     }
 }
@@ -231,6 +233,7 @@ fn half_of_the_pandas_motion_predicts_the_other_half() {
     }
     let limits = [0.09, 0.03, 0.03, 0.04, 0.13, 0.1, 0.22];
     let joints = &found.validation[0].joints;
+    assert_eq!(joints.len(), limits.len());
     joints
         .iter()
         .zip(limits)

@@ -137,7 +137,9 @@ fn friction_of_slow_motions_is_dropped_where_exciting_motions_contradict_it() {
     lab.record_slowly(&lwa4p(), &mut settings);
     let found = lab.identify(&geometry(&truth), &settings);
     assert_eq!(found.friction.len(), 6);
-    for (joint, plain) in found.validation[0].joints.iter().zip(&plain.validation[0].joints) {
+    let [joints, plain] = [&found, &plain].map(|found| &found.validation[0].joints);
+    assert_eq!([joints.len(), plain.len()], [6; 2]);
+    for (joint, plain) in joints.iter().zip(plain) {
         assert!(joint.residual < 1.03 * plain.residual, "{joint:?} {plain:?}");
     }
 }
