@@ -57,6 +57,7 @@ fn our_bounds_are_those_of_reach() {
     assert_eq!(lab.read("out/A/tube.csv"), lab.read("reach/A_tube.csv"));
     let inputs = lab.read("out/A/inputs.csv");
     let recorded = lab.read("data/A_1.csv");
+    assert_eq!(inputs.lines().count(), recorded.lines().count());
     for (row, recorded) in inputs.lines().zip(recorded.lines()).skip(1) {
         let torques: Vec<&str> = recorded.split(',').skip(5).collect();
         assert!(row.ends_with(&torques.join(",")), "{row} is not {recorded}");

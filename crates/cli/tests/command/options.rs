@@ -34,26 +34,31 @@ fn help_fits_a_screen_and_begins_with_an_example() {
 fn help_all_has_every_option_and_example() {
     let lab = Lab::new();
     let reference = lab.run("man --markdown").exits(0).stdout;
-    let sections = reference.split("\n## reachtube ").skip(1);
+    let (commands, mut count) = (commands(&lab), [0; 2]);
+    let sections: Vec<&str> = reference.split("\n## reachtube ").skip(1).collect();
+    assert_eq!(sections.len(), commands.len());
     for section in sections {
         let command = section.lines().next().unwrap();
         let all = lab.run(&format!("{command} --help-all")).exits(0).stdout;
         // The reference prints options that several commands of a group share with the group.
         let below = format!("{command} ");
-        let of_group = commands(&lab).into_iter().filter(|own| own.starts_with(&below));
+        let of_group = commands.iter().filter(|own| own.starts_with(&below));
         let of_group: String =
             of_group.map(|own| lab.run(&format!("{own} --help-all")).exits(0).stdout).collect();
         let options = section.lines().filter_map(|line| line.strip_prefix("- `--"));
         for option in options.map(|line| line.split(['`', ' ']).next().unwrap()) {
             let option = format!("--{option}");
             assert!(all.contains(&option) || of_group.contains(&option), "{command}: {option}");
+            count[0] += 1;
         }
-        let calls = section.lines().filter_map(|line| line.strip_prefix("    reachtube "));
-        for call in calls.filter(|call| !call.ends_with(" [OPTIONS]")) {
-            assert!(all.contains(&format!("  reachtube {call}")), "{command}: {call}: {all}");
+        let short = lab.run(&format!("{command} --help")).exits(0).stdout;
+        for call in short.lines().filter(|line| line.starts_with("  reachtube ")) {
+            assert!(all.lines().any(|line| line == call), "{command}: {call}: {all}");
+            count[1] += 1;
         }
         assert!(all.lines().all(|line| line.chars().count() <= 100), "{command}: {all}");
     }
+    assert!(count[0] > 100 && count[1] >= commands.len(), "{count:?} options and examples");
     let conform = lab.run("conform --help-all").exits(0).stdout;
     assert!(conform.contains("velocities in rad/s") && conform.contains("Sets:"), "{conform}");
 }
