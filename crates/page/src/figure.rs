@@ -140,6 +140,7 @@ fn description(figure: &SuiteFigure, view: View) -> String {
 mod tests {
     use super::*;
     use crate::sample;
+    use crate::style::BAND;
     use crate::suite_figure::Nominal;
     use roxmltree::{Document, Node};
 
@@ -208,6 +209,25 @@ mod tests {
         let flat = vec![vec![0.0; figure.times.len()]; 2];
         figure.band.lower = flat.clone();
         figure.band.upper = flat;
-        Document::parse(&suite_svg(&figure, View::Motion).unwrap()).unwrap();
+        let svg = suite_svg(&figure, View::Motion).unwrap();
+        let document = Document::parse(&svg).unwrap();
+        let fill = colour::hex(BAND[0]);
+        let bands =
+            elements(&document, "polygon").filter(|band| band.attribute("fill") == Some(&fill));
+        let mut drawn = 0;
+        for band in bands {
+            // A level line across the panel.
+            let points = band.attribute("points").unwrap().split_whitespace();
+            let points: Vec<(f64, f64)> = points
+                .map(|point| point.split_once(',').unwrap())
+                .map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap()))
+                .collect();
+            let end = points.iter().map(|point| point.0).max_by(f64::total_cmp).unwrap();
+            let width = f64::from(units(Layout::new(1).plot().0));
+            assert!((end - points[0].0 - width).abs() < 0.05 * width, "{points:?}");
+            assert!(points.iter().all(|point| point.1 == points[0].1 && point.1 > 0.0));
+            drawn += 1;
+        }
+        assert_eq!(drawn, 2);
     }
 }
