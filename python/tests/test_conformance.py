@@ -281,8 +281,12 @@ def test_implausible_answers_are_warned_of(robot: rt.Robot) -> None:
         rt.Run(run.t, run.q, run.qd, -run.tau, suite=run.suite, motion=run.motion)
         for run in runs(robot)
     ]
-    with pytest.warns(rt.ReachtubeWarning):
+    with pytest.warns(rt.ReachtubeWarning, match="the torques have the opposite sign"):
         rt.conform(robot, turned, torque="motor")
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        rt.conform(robot, runs(robot), torque="motor")
+    assert not any("opposite sign" in str(warning.message) for warning in found)
 
 
 @pytest.mark.skipif(not SCHUNK.is_dir(), reason="needs the paper's recordings, ../shared/data")
