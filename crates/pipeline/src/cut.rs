@@ -27,8 +27,8 @@ impl Cut {
     /// Reads logs and cuts them into windows of `horizon` \[s\]. Before that, torques of motors or
     /// links are filtered with a cut-off that is chosen from the logs, and the robot's gravity and
     /// dry friction are taken off them; compensated torques stay as they are. Logs of the motions
-    /// `calibrate`, by name or pattern, choose no cut-off. `max_gap` is the longest time between two
-    /// samples, s.
+    /// `calibrate`, by name or pattern, choose no cut-off. `max_gap` is the longest time between
+    /// two samples, s.
     ///
     /// # Errors
     ///
@@ -80,8 +80,8 @@ impl Cut {
     }
 }
 
-/// Returns the logs of all motions but those that `calibrate` names; all, if it names every one,
-/// which a calibration refuses.
+/// Returns the logs of the motions that `calibrate` does not name. If it names every motion, which
+/// a calibration refuses, all logs are returned.
 fn without<'a>(
     raw: &'a [RawLog],
     origins: &BTreeMap<String, Origin>,
