@@ -70,11 +70,14 @@ pub(crate) const SLACK: f64 = 1e-7;
 impl Case {
     /// Simulates `runs` behaviours and fails where a state leaves the sets, at samples or between.
     ///
-    /// Returns the largest ratio of the simulated width to the width of the set at the end.
+    /// Returns the largest ratio of the simulated width to the width of the set at the end, 0 where
+    /// the flowpipe gave up in its first step.
     pub(crate) fn simulate(&self, runs: usize, seed: u64) -> f64 {
         let mut random = Random::new(seed);
         let steps = self.flowpipe.len() - 1;
-        assert!(steps > 0, "{:?}", self.flowpipe.outcome());
+        if steps == 0 {
+            return 0.0;
+        }
         let times: Vec<f64> =
             (0..=steps * self.parts).map(|k| k as f64 * self.step / self.parts as f64).collect();
         let kinds: Vec<bool> = (0..runs).map(|run| run % 2 == 0).collect();
@@ -197,7 +200,7 @@ pub(crate) fn simulate_random_cases(runs: usize, method: impl Fn(u64) -> Flowpip
         })
         .collect();
     let reached = simulated.iter().filter(|(is_reached, _)| *is_reached).count();
-    assert!(reached >= 150, "{reached} of 200 reach the end");
+    assert!(reached >= 195, "{reached} of 200 reach the end");
     // Some behaviours come close to the sides of the sets, so the sets are not merely large.
     let close = simulated.iter().filter(|(_, used)| *used > 0.9).count();
     assert!(close > 100, "{close} of 200 came close");
