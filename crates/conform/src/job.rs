@@ -10,7 +10,7 @@ use reachtube_robot::Robot;
 use crate::answer::Answer;
 use crate::data::notion::Notion;
 use crate::data::problem::{Keep, Problem};
-use crate::data::settings::{Noise, Settings, Tolerance};
+use crate::data::settings::{Settings, Tolerance};
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::group::{FitSettings, Group};
@@ -157,13 +157,6 @@ impl Job {
     #[must_use]
     pub fn notion(mut self, notion: Notion) -> Self {
         self.settings.notion = notion;
-        self
-    }
-
-    /// Chooses the measurement noise V.
-    #[must_use]
-    pub fn noise(mut self, noise: Noise) -> Self {
-        self.settings.noise = noise;
         self
     }
 

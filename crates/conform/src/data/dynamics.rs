@@ -26,7 +26,7 @@ impl Dynamics {
     /// # Errors
     ///
     /// When the robot is not physical at the expansion point, or the order does not fit.
-    pub fn new(robot: &Robot, settings: &Settings) -> Result<Self> {
+    pub(crate) fn new(robot: &Robot, settings: &Settings) -> Result<Self> {
         let Abstraction { model, order } = settings.abstraction;
         let polynomials = PolynomialModel::new(robot, model, order, &settings.expansion_point)?;
         Ok(Self::of(polynomials, settings.method))

@@ -22,4 +22,4 @@ pub(crate) mod step;
 pub(crate) mod unseen;
 
 pub use fit::Fitted;
-pub use record::{FitRecord, FittedParameter, GroupCost, PullCost, TorquePrediction, UnseenMotion};
+pub use record::{FitRecord, FittedParameter, GroupCost, TorquePrediction, UnseenMotion};

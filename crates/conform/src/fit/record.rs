@@ -41,7 +41,7 @@ pub struct FitRecord {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub identified_calibrated_cost: Option<f64>,
     /// The weights of the pull that were tried.
-    pub pulls: Vec<PullCost>,
+    pub(crate) pulls: Vec<PullCost>,
     /// The parameters.
     pub parameters: Vec<FittedParameter>,
     /// How well both models predict the input, joint by joint.
@@ -117,7 +117,7 @@ pub(crate) fn mean_of(
 /// A weight of the pull that was tried.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PullCost {
+pub(crate) struct PullCost {
     /// The weight.
     pub pull: f64,
     /// The mean cost of the sets of all motions over the motions left out; `None` if a nominal

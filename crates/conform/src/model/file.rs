@@ -91,7 +91,7 @@ pub struct Model {
     pub search: Option<SearchSummary>,
     /// Which recordings a motion of the model itself reproduces, where the settings ask for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub explained: Option<Explained>,
+    pub(crate) explained: Option<Explained>,
     /// X0 around the nominal initial state, 2n, rad and rad/s.
     pub initial_set: Hyperrectangle,
     /// U around the nominal input, n, N m.
@@ -293,7 +293,7 @@ impl Model {
     /// # Errors
     ///
     /// [`Error::ModelFile`] for a model whose parts contradict each other.
-    pub fn setup(&self) -> Result<Setup> {
+    pub(crate) fn setup(&self) -> Result<Setup> {
         let wrong = |problem| Error::ModelFile { path: "the model".into(), problem };
         self.check_parts().map_err(wrong)
     }

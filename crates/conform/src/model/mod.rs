@@ -13,4 +13,4 @@ mod validity;
 
 pub use file::Model;
 pub use provenance::Provenance;
-pub use records::{DataRecord, Explained, Residual, RunRecord, SuiteRecord};
+pub use records::{DataRecord, RunRecord, SuiteRecord};

@@ -23,7 +23,7 @@ pub struct Provenance {
 impl Model {
     /// Returns what an answer about this model and the recordings of `problem` is about.
     #[must_use]
-    pub fn provenance(&self, problem: &Problem) -> Provenance {
+    pub(crate) fn provenance(&self, problem: &Problem) -> Provenance {
         self.provenance_of(problem.settings().clone(), DataRecord::new(problem))
     }
 

@@ -16,7 +16,7 @@ use crate::explain::explanation::Explanation;
 /// input in U, held over each sample.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Explained {
+pub(crate) struct Explained {
     /// Number of recordings that are reproduced within the tolerance of the settings.
     pub runs: usize,
     /// The residuals of each recording.
@@ -26,7 +26,7 @@ pub struct Explained {
 /// The largest difference of a recording to the closest motion found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Residual {
+pub(crate) struct Residual {
     /// Path in the data set.
     pub file: String,
     /// The largest difference of a position, rad; `None` where the motion ran away.
@@ -129,7 +129,7 @@ impl SuiteRecord {
 
     /// Returns the number of runs.
     #[must_use]
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.run_count.unwrap_or(self.runs.len())
     }
 

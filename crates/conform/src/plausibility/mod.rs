@@ -12,6 +12,7 @@ mod warnings;
 
 pub(crate) use friction::friction_warning;
 pub(crate) use nominal_fit::NominalFit;
-pub use usefulness::{JointWidth, Usefulness, Vacuity, VacuousSet};
+pub use usefulness::{JointWidth, Usefulness};
+pub(crate) use usefulness::{Vacuity, VacuousSet};
 pub use warning::{Warning, WarningKind};
 pub(crate) use warnings::warnings;

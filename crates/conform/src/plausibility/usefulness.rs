@@ -31,7 +31,7 @@ pub struct Usefulness {
     pub joints: Vec<JointWidth>,
     /// The vacuous sets; none of a model that is useful.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub vacuous: Vec<Vacuity>,
+    pub(crate) vacuous: Vec<Vacuity>,
 }
 
 /// The reachable set of a joint's position at the end of the recordings.
@@ -48,7 +48,7 @@ pub struct JointWidth {
 /// A vacuous set of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Vacuity {
+pub(crate) struct Vacuity {
     /// The joint, from 1.
     pub joint: usize,
     /// The set.
@@ -63,7 +63,7 @@ pub struct Vacuity {
 /// Which set is vacuous.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum VacuousSet {
+pub(crate) enum VacuousSet {
     /// The reachable set of the position.
     Reachable,
     /// X0 of the position.

@@ -15,7 +15,8 @@ macro_rules! codes {
 
         impl Code {
             /// All codes.
-            pub const ALL: &[Self] = &[$(Self::$code),*];
+            #[cfg(test)]
+            const ALL: &[Self] = &[$(Self::$code),*];
 
             /// Returns the name of the code, as in JSON.
             #[must_use]
@@ -27,7 +28,7 @@ macro_rules! codes {
 
             /// Returns what findings of the code state, as a sentence.
             #[must_use]
-            pub fn meaning(self) -> &'static str {
+            pub(crate) fn meaning(self) -> &'static str {
                 match self {
                     $(Self::$code => concat!($($doc),*).trim_ascii(),)*
                 }

@@ -31,7 +31,7 @@ impl Setting {
 
     /// Returns the setting as users of a front end write it.
     #[must_use]
-    pub fn written_for(&self, front_end: FrontEnd) -> String {
+    pub(crate) fn written_for(&self, front_end: FrontEnd) -> String {
         front_end.setting(self.name, Some(self.value.as_str()).filter(|value| !value.is_empty()))
     }
 }

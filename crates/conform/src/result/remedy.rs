@@ -58,7 +58,7 @@ impl Remedy {
 
     /// Returns the remedy as a sentence, as users of a front end write settings.
     #[must_use]
-    pub fn written_for(&self, front_end: FrontEnd) -> String {
+    pub(crate) fn written_for(&self, front_end: FrontEnd) -> String {
         let Self { setting, value, effect } = self;
         // Files of earlier versions have the name that the option had then.
         let setting = if setting == "model" { "paper-model" } else { setting };
