@@ -43,7 +43,7 @@ pub struct WorstStop {
 ///
 /// Outer, as [`Category::stop`]. Ways and times are infinite if a sample has no proved standstill.
 #[must_use]
-pub fn stops_along(
+pub(crate) fn stops_along(
     problem: &Problem,
     brakes: &Brakes,
     category: &Category,

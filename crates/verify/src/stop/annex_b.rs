@@ -60,7 +60,7 @@ pub struct AnnexRow {
 impl AnnexB {
     /// Returns the greatest part of the load in the table.
     #[must_use]
-    pub fn full_load(&self) -> f64 {
+    pub(crate) fn full_load(&self) -> f64 {
         self.rows.iter().map(|row| row.load).fold(0.0, f64::max)
     }
 }
@@ -94,7 +94,11 @@ struct Case {
 /// # Errors
 ///
 /// The robot with its load is not valid.
-pub fn annex_b(robot: &Robot, brakes: &Brakes, input_set: &Hyperrectangle) -> Result<AnnexB> {
+pub(crate) fn annex_b(
+    robot: &Robot,
+    brakes: &Brakes,
+    input_set: &Hyperrectangle,
+) -> Result<AnnexB> {
     let mut notes = Vec::new();
     let unknown = robot.joints().iter().filter(|joint| joint.velocity_limit.is_none());
     if let Some(joint) = unknown.into_iter().next() {

@@ -26,13 +26,13 @@ impl Category {
     /// Returns category 1 with the deceleration of the brakes' file and the error of the drives'
     /// torque; `None` if the file has no deceleration.
     #[must_use]
-    pub fn one(brakes: &Brakes, input_set: &Hyperrectangle) -> Option<Self> {
+    pub(crate) fn one(brakes: &Brakes, input_set: &Hyperrectangle) -> Option<Self> {
         let limits = brakes.deceleration.clone()?;
         Some(Self::One { limits, input_set: input_set.clone() })
     }
 
-    /// Returns the category of a number, 0 or 1, as [`one`](Self::one) does; `origin` names the
-    /// brakes' file in errors.
+    /// Returns the category of a number, 0 or 1, with the deceleration of the brakes' file and the
+    /// error of the drives' torque; `origin` names that file in errors.
     ///
     /// # Errors
     ///
@@ -52,7 +52,7 @@ impl Category {
 
     /// Returns the number of the category, 0 or 1.
     #[must_use]
-    pub fn number(&self) -> u8 {
+    pub(crate) fn number(&self) -> u8 {
         match self {
             Self::Zero => 0,
             Self::One { .. } => 1,

@@ -31,7 +31,7 @@ impl Path {
     ///
     /// Panics if there are fewer than two samples, or not one state for each time.
     #[must_use]
-    pub fn through(times: &[f64], states: &[f64]) -> Self {
+    pub(crate) fn through(times: &[f64], states: &[f64]) -> Self {
         assert!(times.len() > 1, "a path has two ends");
         let width = states.len() / times.len();
         assert_eq!(states.len(), width * times.len(), "a path has one state for each time");
@@ -65,7 +65,7 @@ impl Path {
 
     /// Returns the time of the end, s.
     #[must_use]
-    pub fn end(&self) -> f64 {
+    pub(crate) fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }
 

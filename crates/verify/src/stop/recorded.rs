@@ -47,7 +47,7 @@ pub struct RecordedStop {
 /// # Errors
 ///
 /// The defects of a recording.
-pub fn recorded_stops(
+pub(crate) fn recorded_stops(
     robot: &Robot,
     brakes: &Brakes,
     category: &Category,

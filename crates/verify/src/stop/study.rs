@@ -48,11 +48,11 @@ pub struct StopStudy {
 ///
 /// # Guarantee
 ///
-/// Outer, as [`stops_along`], [`annex_b`] and [`recorded_stops`].
+/// Outer, as [`Category::stop`]. Ways and times are infinite where no standstill is proved.
 ///
 /// # Errors
 ///
-/// As [`annex_b`] and [`recorded_stops`].
+/// The defects of a recorded stop; a robot that is not valid with its load.
 pub fn stop_study(
     problem: &Problem,
     sets: &UncertaintySets,
