@@ -23,7 +23,7 @@ impl Placement {
     }
 
     /// Makes a placement without rotation from a translation \[m\].
-    pub fn translation(x: f64, y: f64, z: f64) -> Self {
+    pub(crate) fn translation(x: f64, y: f64, z: f64) -> Self {
         Self { rotation: Matrix3::identity(), translation: Vector3::new(x, y, z) }
     }
 

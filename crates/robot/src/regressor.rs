@@ -53,7 +53,7 @@ impl<'a> Regressor<'a> {
     }
 
     /// Returns the parameters, in the order of the columns.
-    pub fn parameters(&self) -> &[Parameter] {
+    pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 

@@ -35,14 +35,9 @@ pub struct MotionSample {
 }
 
 impl FourierTrajectory {
-    /// Returns the number of joints.
-    pub fn joint_count(&self) -> usize {
-        self.centre.len()
-    }
-
     /// Returns position, velocity and acceleration at a time \[s\].
-    pub fn at(&self, t: f64) -> MotionSample {
-        let joints = (0..self.joint_count()).map(|i| self.joint_at(i, t));
+    fn at(&self, t: f64) -> MotionSample {
+        let joints = (0..self.centre.len()).map(|i| self.joint_at(i, t));
         let (mut q, mut qd, mut qdd) = (Vec::new(), Vec::new(), Vec::new());
         joints.for_each(|[p, v, a]| {
             q.push(p);

@@ -4,7 +4,7 @@ use reachtube_scalar::Lanewise;
 
 /// Speed below which a joint is near standstill, rad/s or m/s. The steps of dry friction are
 /// softened there.
-pub const NEAR_STANDSTILL: f64 = 0.02;
+pub(crate) const NEAR_STANDSTILL: f64 = 0.02;
 
 /// Load below which [`Coulomb::softened_torque`] passes from braking to driving, in parts of the
 /// mean friction at no load.
@@ -79,8 +79,8 @@ impl Coulomb {
     /// \[rad/s\]. The parts belong to driving forward, driving backward, braking backward and
     /// braking forward.
     ///
-    /// Below [`NEAR_STANDSTILL`] it is in proportion to the velocity. Where the load is smaller
-    /// than half of the mean friction at no load, it passes linearly from braking to driving.
+    /// Below 0.02 rad/s or m/s it is in proportion to the velocity. Where the load is smaller than
+    /// half of the mean friction at no load, it passes linearly from braking to driving.
     #[must_use]
     pub fn softened_torque(&self, load: f64, qd: f64, parts: [f64; 4]) -> f64 {
         let lines = [

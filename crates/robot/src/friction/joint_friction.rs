@@ -30,8 +30,8 @@ impl Friction {
     /// \[N m\], a joint velocity \[rad/s\] and the torque \[N m\] that would move the joint
     /// without it, the motor torque less gravity.
     ///
-    /// At rest, friction balances that torque as far as it can. From [`NEAR_STANDSTILL`] on it is
-    /// [`Friction::dry_torque`], and in between it passes from one to the other.
+    /// At rest, friction balances that torque as far as it can. From 0.02 rad/s or m/s on it
+    /// is [`Friction::dry_torque`], and in between it passes from one to the other.
     #[must_use]
     pub fn holding_torque(&self, load: f64, qd: f64, driving: f64) -> f64 {
         let limit = |direction: f64| self.dry_torque(load, direction * f64::MIN_POSITIVE);
@@ -53,7 +53,7 @@ impl Friction {
 
     /// Returns dry friction \[N m\] as [`Friction::dry_torque`] does, but without steps:
     /// [`Coulomb::softened_torque`], and the Stribeck effect in proportion to the velocity below
-    /// [`NEAR_STANDSTILL`].
+    /// 0.02 rad/s or m/s.
     #[must_use]
     pub fn softened_dry_torque(&self, load: f64, qd: f64) -> f64 {
         let coulomb = self.coulomb.softened_torque(load, qd, [1.0; 4]);

@@ -7,7 +7,7 @@ pub(crate) mod stribeck;
 pub(crate) mod viscous;
 pub(crate) mod warming;
 
-pub use coulomb::{Coulomb, LoadLine, NEAR_STANDSTILL};
+pub use coulomb::{Coulomb, LoadLine};
 pub use joint_friction::Friction;
 pub use stribeck::Stribeck;
 pub use viscous::Viscous;
