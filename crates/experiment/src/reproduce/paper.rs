@@ -35,7 +35,7 @@ impl Paper {
 
 /// A half of Table II in the paper: the bounds of each joint.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct PaperSets {
+pub(crate) struct PaperSets {
     /// X0, positions \[rad\].
     pub x0_q: [[f64; 2]; 6],
     /// X0, velocities \[rad/s\].

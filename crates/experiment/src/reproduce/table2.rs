@@ -65,7 +65,7 @@ pub struct Table2Case {
     /// Implausible results, one sentence each.
     pub warnings: Vec<String>,
     /// The paper's.
-    pub paper: &'static PaperSets,
+    pub(crate) paper: &'static PaperSets,
 }
 
 /// Table II.

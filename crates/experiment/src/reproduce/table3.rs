@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 /// A part of Table III.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Part {
+pub(crate) enum Part {
     /// Friction parameters.
     Friction,
     /// Gravity model.
@@ -31,7 +31,7 @@ pub enum Part {
 /// the truth, and no number of recordings brings them closer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Effect {
+pub(crate) enum Effect {
     /// Dry friction rises toward standstill; the law without this rise is higher elsewhere.
     Stribeck,
     /// Friction falls while the joints warm up; the law holds at the mean warmth.
@@ -46,7 +46,7 @@ pub enum Effect {
 
 /// A row of Table III.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Table3Row {
+pub(crate) struct Table3Row {
     /// The part of the table.
     pub part: Part,
     /// A coefficient of a joint's friction, or a combination of parameters.
@@ -72,7 +72,7 @@ pub struct Table3 {
     /// Number of static poses.
     pub poses: usize,
     /// The rows: friction joint by joint, gravity, inertial parameters.
-    pub rows: Vec<Table3Row>,
+    pub(crate) rows: Vec<Table3Row>,
     /// What identification warns of.
     pub warnings: Vec<String>,
 }

@@ -37,4 +37,4 @@ pub use error::VirtualRobotError;
 pub use parameters::VirtualRobotParameters;
 pub(crate) use recording::Recording;
 pub(crate) use suite::{PreRecorded, Scatter, SuiteRuns, record_suite};
-pub use truth::VirtualRobot;
+pub(crate) use truth::VirtualRobot;

@@ -107,8 +107,8 @@ const LONGEST_DELAY: f64 = 100.0;
 impl VirtualRobotParameters {
     /// Returns the parameters of a robot that is its nominal model: friction without excess and
     /// independent of temperature, no ripple, no delay, no scatter. Its encoders and filter remain.
-    #[must_use]
-    pub fn ideal() -> Self {
+    #[cfg(test)]
+    pub(crate) fn ideal() -> Self {
         Self {
             link_ratio: 1.0,
             motor_ratio: 1.0,

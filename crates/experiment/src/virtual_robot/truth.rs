@@ -11,7 +11,7 @@ use crate::error::Result;
 
 /// A virtual robot: the nominal model that its controller knows, and the true robot.
 #[derive(Debug, Clone)]
-pub struct VirtualRobot {
+pub(crate) struct VirtualRobot {
     parameters: VirtualRobotParameters,
     nominal: Robot,
     truth: Robot,
@@ -29,20 +29,7 @@ impl VirtualRobot {
     ///
     /// [`VirtualRobotError`](super::VirtualRobotError) for a parameter outside its range, and
     /// [`RobotError`](reachtube_robot::RobotError) where the true robot is not valid.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use reachtube_robot::Robot;
-    /// use reachtube_experiment::virtual_robot::{VirtualRobot, VirtualRobotParameters};
-    ///
-    /// let robot = VirtualRobot::new(&Robot::lwa4p(), VirtualRobotParameters::default())?;
-    /// let (true_gravity, nominal) =
-    ///     [robot.truth(), robot.nominal()].map(|robot| robot.gravity_torque(&[0.5; 6])).into();
-    /// assert!((true_gravity - nominal).amax() > 0.1);
-    /// # Ok::<(), reachtube_experiment::Error>(())
-    /// ```
-    pub fn new(nominal: &Robot, parameters: VirtualRobotParameters) -> Result<Self> {
+    pub(crate) fn new(nominal: &Robot, parameters: VirtualRobotParameters) -> Result<Self> {
         parameters.validate()?;
         let truth = Robot::from_description(&true_description(nominal, &parameters))?;
         let capacity = |joint: &JointDescription| {
@@ -61,14 +48,14 @@ impl VirtualRobot {
 
     /// Returns the nominal model.
     #[must_use]
-    pub fn nominal(&self) -> &Robot {
+    pub(crate) fn nominal(&self) -> &Robot {
         &self.nominal
     }
 
     /// Returns the true robot, with its friction as a law of temperature. Torque ripple is not part
     /// of it.
     #[must_use]
-    pub fn truth(&self) -> &Robot {
+    pub(crate) fn truth(&self) -> &Robot {
         &self.truth
     }
 
@@ -152,4 +139,17 @@ fn set_inertial(joint: &mut JointDescription, p: &[f64]) {
     joint.inertia = [p[4], p[5], p[7], p[6], p[8], p[9]];
     joint.about = InertiaPoint::Origin;
     joint.gravity_moments = None;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_true_robot_has_other_gravity_than_the_nominal_one() {
+        let robot = VirtualRobot::new(&Robot::lwa4p(), VirtualRobotParameters::default()).unwrap();
+        let [truth, nominal] =
+            [robot.truth(), robot.nominal()].map(|robot| robot.gravity_torque(&[0.5; 6]));
+        assert!((truth - nominal).amax() > 0.1);
+    }
 }
