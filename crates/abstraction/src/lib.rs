@@ -57,7 +57,7 @@ mod systems;
 mod taylor_order;
 
 pub use abstraction::Abstraction;
-pub use error::{Error, RecordsError, Result};
+pub use error::{Error, RecordsError};
 pub use expansion_point::ExpansionPoint;
 pub use field::ModelField;
 pub use layout::Layout;

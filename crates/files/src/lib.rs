@@ -29,7 +29,7 @@ mod read;
 pub mod write;
 
 pub use digest::hex;
-pub use error::{Error, Result};
+pub use error::Error;
 pub use names::distinct_names;
 pub use overwrite::{MARK, Overwrite};
 pub use printable::printable;

@@ -248,4 +248,4 @@ fn same_content(validate: &Path, fitted: &Path) -> String {
 }
 
 /// A result of this crate.
-pub type Result<T, E = Error> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

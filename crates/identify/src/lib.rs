@@ -67,7 +67,7 @@ mod validate;
 mod variant;
 mod warming;
 
-pub use error::{Error, Result};
+pub use error::Error;
 pub use fit::{Fit, JointFit};
 pub use friction::falling::FallingFriction;
 pub use friction::fit::{FrictionFit, JointFriction};

@@ -48,7 +48,7 @@ mod sample;
 pub use assemble::page;
 pub use built::{TO_HELD_OUT, TO_OWN, built_pages};
 pub use chart::{Chart, Series, charts_svg};
-pub use error::{Error, Result};
+pub use error::Error;
 pub use figure::suite_svg;
 pub use html::write_html;
 pub use identified::write_identified_html;

@@ -95,7 +95,7 @@ pub enum Error {
 }
 
 /// A result of this crate.
-pub type Result<T, E = Error> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
     /// Names the most likely cause of an error, if one is known.

@@ -39,7 +39,7 @@ pub use build::{Built, build};
 pub use choices::{Choice, Choices};
 pub use compared::HeldOut;
 pub use cut::Cut;
-pub use error::{Error, Result};
+pub use error::Error;
 pub use horizon::HorizonWidths;
 pub use joint_row::JointRow;
 pub use live::LiveMonitor;

@@ -68,7 +68,7 @@ mod wraps;
 pub use data_set::{DataSet, any_simulated, index_folder};
 pub use decimal::picoseconds;
 pub use defect::{Defect, DefectKind};
-pub use error::{Error, Result};
+pub use error::Error;
 pub use even::{EvenSamples, Sample};
 pub use gap_limit::GapLimit;
 pub use index::RunEntry;

@@ -16,7 +16,7 @@ mod verdict;
 pub use body::body::Body;
 pub use body::capsule::Capsule;
 pub use body::capsules::Capsules;
-pub use error::{Error, Result};
+pub use error::Error;
 pub use margin::Margin;
 pub use occupancy::{Occupancy, SweptCapsule};
 pub use picture::picture;
