@@ -63,7 +63,7 @@ impl OperatingBox {
     ///
     /// Exact: the ends are the ends of the box.
     #[must_use]
-    pub fn sides(&self) -> Vec<Interval> {
+    pub(crate) fn sides(&self) -> Vec<Interval> {
         let all = self.q.iter().chain(&self.qd).chain(&self.u);
         all.map(|[low, high]| Interval::point(*low).hull(Interval::point(*high))).collect()
     }

@@ -6,7 +6,7 @@ use super::text_table::TextTable;
 use reachtube_robot::JointKind;
 
 /// A closed interval `[lower, upper]`, in the unit that the field holding it names.
-pub type Bounds = [f64; 2];
+pub(crate) type Bounds = [f64; 2];
 
 /// The contents of a page. Texts are plain text; the page escapes them.
 #[derive(Debug, Clone, Default)]

@@ -263,7 +263,7 @@ impl Choices {
     /// Returns the choices as TOML, with the reasons of `made` as comments, and a digest of the
     /// values that the reasons belong to.
     #[must_use]
-    pub fn to_toml(&self, made: &[Choice]) -> String {
+    pub(crate) fn to_toml(&self, made: &[Choice]) -> String {
         let lines = self.values();
         let mut text = String::new();
         for line in lines.lines() {
