@@ -14,7 +14,7 @@ use crate::robot::NativeRobot;
 use crate::watched::watched;
 
 #[pyclass(frozen, name = "Abstraction", module = "reachtube._reachtube")]
-pub struct NativeAbstraction {
+pub(crate) struct NativeAbstraction {
     pub model: Arc<PolynomialModel>,
 }
 

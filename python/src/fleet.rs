@@ -22,14 +22,14 @@ use crate::watched::watched;
 
 /// How the recordings of a fleet are folded: to find sets, or to check a model.
 #[pyclass(frozen, name = "Fleet", module = "reachtube._reachtube")]
-pub struct NativeFleet {
+pub(crate) struct NativeFleet {
     setup: Arc<Setup>,
     model: Option<Arc<Model>>,
 }
 
 /// A part of a fleet's recordings. It holds what is needed of them, and not the recordings.
 #[pyclass(frozen, name = "Fold", module = "reachtube._reachtube")]
-pub struct NativeFold {
+pub(crate) struct NativeFold {
     fold: Mutex<Fold>,
 }
 

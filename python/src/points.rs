@@ -20,7 +20,7 @@ pub(crate) struct NativeFleetProblem {
 
 /// The recorded points of a part.
 #[pyclass(frozen, name = "PartPoints", module = "reachtube._reachtube")]
-pub struct NativePartPoints {
+pub(crate) struct NativePartPoints {
     points: PartPoints,
 }
 

@@ -15,7 +15,7 @@ use crate::watched::{watched, watched_alone};
 
 /// One run.
 #[pyclass(frozen, name = "Run", module = "reachtube._reachtube")]
-pub struct NativeRun {
+pub(crate) struct NativeRun {
     pub run: Arc<Run>,
 }
 
@@ -129,7 +129,7 @@ impl NativeRun {
 
 /// A source of recordings that jobs share.
 #[derive(Debug, Clone)]
-pub struct SharedSource(pub Arc<dyn RunSource>);
+pub(crate) struct SharedSource(pub Arc<dyn RunSource>);
 
 impl RunSource for SharedSource {
     fn index_name(&self) -> std::path::PathBuf {
@@ -167,7 +167,7 @@ pub(crate) fn csv(run: &Run) -> String {
 
 /// A folder of recordings, or runs in memory.
 #[pyclass(frozen, name = "Source", module = "reachtube._reachtube")]
-pub struct NativeSource {
+pub(crate) struct NativeSource {
     pub source: SharedSource,
     folder: Option<DataSet>,
 }

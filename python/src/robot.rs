@@ -13,13 +13,13 @@ use crate::pool;
 
 /// A robot, and the URDF it was read from if there is one.
 #[pyclass(frozen, name = "Robot", module = "reachtube._reachtube")]
-pub struct NativeRobot {
+pub(crate) struct NativeRobot {
     pub robot: Arc<Robot>,
     urdf: Option<Arc<Urdf>>,
 }
 
 impl NativeRobot {
-    pub fn new(robot: Robot) -> Self {
+    pub(crate) fn new(robot: Robot) -> Self {
         Self { robot: Arc::new(robot), urdf: None }
     }
 
