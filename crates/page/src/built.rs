@@ -12,11 +12,23 @@ use crate::page::Page;
 use crate::page_files::PAGE_FILE;
 use crate::sources::Sources;
 
-/// The words of a link to the page about motions that were held out.
-pub const TO_HELD_OUT: &str = "the same sets on motions that were held out";
+impl Page {
+    /// Adds a link to the page about motions that were held out, in the folder `held-out` beside
+    /// this page's folder.
+    pub fn link_to_held_out(&mut self) {
+        self.link("the same sets on motions that were held out", "held-out");
+    }
 
-/// The words of a link to the page about the model's own recordings.
-pub const TO_OWN: &str = "the recordings that the model was made of";
+    /// Adds a link to the page about the model's own recordings, in `folder` beside this page's
+    /// folder.
+    pub fn link_to_own(&mut self, folder: &str) {
+        self.link("the recordings that the model was made of", folder);
+    }
+
+    fn link(&mut self, words: &str, folder: &str) {
+        self.lead.links.push((words.into(), format!("../{folder}/{PAGE_FILE}")));
+    }
+}
 
 /// Returns the pages about a model that was made of logs, each with the name of its folder: `page`
 /// about some of the model's recordings, and `held-out` about some that were held out, if they
@@ -49,8 +61,8 @@ pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
         format!(", an excerpt of {all} that were held out, with up to 12 that leave the sets");
     let mut other = excerpt(built, &built.shown_held_out, &which)?;
     other.verdict.words = format!("Held out: {}. {}", built.held_out_words(), other.verdict.words);
-    own.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
-    other.lead.links = vec![(TO_OWN.into(), format!("../page/{PAGE_FILE}"))];
+    own.link_to_held_out();
+    other.link_to_own("page");
     Ok(vec![("page", own), ("held-out", other)])
 }
 

@@ -29,20 +29,6 @@ const LEAD: [f64; 2] = [480.0, 280.0];
 ///
 /// Fails for figures that [`suite_svg`](super::suite_svg) refuses, bounds that are not finite, and
 /// where `out` fails.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_page::{Assets, Page, Verdict, write_html};
-///
-/// let words = "All 73 runs lie in the reachable set.".into();
-/// let verdict = Verdict { ok: true, words, ..Verdict::default() };
-/// let mut html = Vec::new();
-/// let page = Page { title: "LWA 4P".into(), verdict, ..Page::default() };
-/// write_html(&page, Assets::Inside, &mut html)?;
-/// assert!(String::from_utf8(html).unwrap().contains("All 73 runs"));
-/// # Ok::<(), reachtube_page::Error>(())
-/// ```
 pub fn write_html(page: &Page, assets: Assets, out: &mut impl Write) -> Result<(), Error> {
     page.sets.iter().try_for_each(check::sets)?;
     page.suites.iter().try_for_each(check::suite)?;

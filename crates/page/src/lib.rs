@@ -46,7 +46,7 @@ mod browser;
 mod sample;
 
 pub use assemble::page;
-pub use built::{TO_HELD_OUT, TO_OWN, built_pages};
+pub use built::built_pages;
 pub use chart::{Chart, Series, charts_svg};
 pub use error::Error;
 pub use figure::suite_svg;
@@ -54,7 +54,7 @@ pub use html::write_html;
 pub use identified::write_identified_html;
 pub use identified_charts::{load_chart, viscous_chart};
 pub use library::{Assets, LIBRARY_FILE, write_library};
-pub use page::{JointSets, Lead, Page, SetsTable, Verdict};
+pub use page::Page;
 pub use page_files::{PAGE_FILE, PageFile, figure_files, page_files};
 pub use reachtube_conform::data::Side;
 pub use skeleton::{document, long_table, section};

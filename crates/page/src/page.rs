@@ -12,38 +12,38 @@ pub(crate) type Bounds = [f64; 2];
 #[derive(Debug, Clone, Default)]
 pub struct Page {
     /// Heading, such as the robot's name.
-    pub title: String,
+    pub(crate) title: String,
     /// One line under the heading.
-    pub subtitle: String,
+    pub(crate) subtitle: String,
     /// The answer, shown first.
-    pub verdict: Verdict,
+    pub(crate) verdict: Verdict,
     /// The first lines below it.
-    pub lead: Lead,
+    pub(crate) lead: Lead,
     /// The figures, in the order of their buttons; the first one is open.
-    pub suites: Vec<SuiteFigure>,
+    pub(crate) suites: Vec<SuiteFigure>,
     /// The phase planes of the joints, where the model is linear.
-    pub phase_planes: Vec<Chart>,
+    pub(crate) phase_planes: Vec<Chart>,
     /// What was fitted of the nominal model, for a model that was.
-    pub nominal: Vec<TextTable>,
+    pub(crate) nominal: Vec<TextTable>,
     /// The uncertainty sets: one table per notion of conformance (Table II has two).
-    pub sets: Vec<SetsTable>,
+    pub(crate) sets: Vec<SetsTable>,
     /// What the cost of the sets comes from.
-    pub cost: Vec<TextTable>,
+    pub(crate) cost: Vec<TextTable>,
     /// The runs over what the cost may depend on.
-    pub cost_charts: Vec<Chart>,
+    pub(crate) cost_charts: Vec<Chart>,
     /// Settings and provenance: name and value.
-    pub facts: Vec<(String, String)>,
+    pub(crate) facts: Vec<(String, String)>,
     /// Claims that the reader may rely on.
-    pub trust: Vec<String>,
+    pub(crate) trust: Vec<String>,
     /// Conclusions that the reader must not draw.
-    pub caution: Vec<String>,
+    pub(crate) caution: Vec<String>,
     /// Further remarks, one paragraph each.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// The first lines of a page: the answer in numbers, and one figure, before any table.
 #[derive(Debug, Clone, Default)]
-pub struct Lead {
+pub(crate) struct Lead {
     /// Marks of the whole page, such as "simulated data".
     pub badges: Vec<String>,
     /// The answer in numbers with units: name and value.
@@ -58,7 +58,7 @@ pub struct Lead {
 
 /// The outcome in words.
 #[derive(Debug, Clone, Default)]
-pub struct Verdict {
+pub(crate) struct Verdict {
     /// Whether every recording was proved to be enclosed, in the notion that `words` names.
     pub ok: bool,
     /// Whether the model is vacuous: its sets do not limit the motion of some joint.
@@ -77,7 +77,7 @@ pub struct Verdict {
 
 /// The uncertainty sets of all joints for one notion of conformance (one half of Table II).
 #[derive(Debug, Clone, Default)]
-pub struct SetsTable {
+pub(crate) struct SetsTable {
     /// The notion, such as "position and velocity conformant".
     pub notion: String,
     /// One row per joint.
@@ -86,7 +86,7 @@ pub struct SetsTable {
 
 /// The uncertainty sets of one joint (a row of Table II).
 #[derive(Debug, Clone, Default)]
-pub struct JointSets {
+pub(crate) struct JointSets {
     /// The joint's name.
     pub joint: String,
     /// The joint's kind, from which the units follow.

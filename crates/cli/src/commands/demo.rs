@@ -6,7 +6,7 @@ use clap::Args;
 use reachtube::conform::result::{FrontEnd, Summary, Table};
 use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
 use reachtube::demo::{DemoOptions, RecordedDemo, record};
-use reachtube::page::{Assets, PAGE_FILE, Sources, TO_HELD_OUT, TO_OWN};
+use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};
 use reachtube::{Model, write};
 use reachtube_robot::Robot;
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         write::atomically(path, |file| file.write_all(text.as_bytes()))?;
     }
     let mut page = conform_command::page_of(&answer)?;
-    page.lead.links = vec![(TO_HELD_OUT.into(), format!("../held-out/{PAGE_FILE}"))];
+    page.link_to_held_out();
     output::wrote(&report_files::write_page(&page, Assets::Inside, &pages[0])?);
     let summary = answer.summary(FrontEnd::CommandLine);
     // Try them on the motions held out.
@@ -172,7 +172,7 @@ fn check_held_out(
     let sources =
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     let mut own = reachtube::page::page(&sources)?;
-    own.lead.links = vec![(TO_OWN.into(), format!("../report/{PAGE_FILE}"))];
+    own.link_to_own("report");
     output::wrote(&report_files::write_page(&own, Assets::Inside, page)?);
     Ok((opened, check))
 }
