@@ -31,7 +31,9 @@ fn runs(count: usize) -> MemoryRuns {
 }
 
 fn part(setup: &Setup, runs: &MemoryRuns, first: u64) -> Fold {
-    Fold::of_source(setup, runs, first).unwrap()
+    let mut fold = Fold::new(setup).unwrap();
+    fold.take_source(runs, first).unwrap();
+    fold
 }
 
 /// The runs are in memory already.

@@ -89,12 +89,6 @@ impl Certificate {
         })
     }
 
-    /// Returns the number of points.
-    #[must_use]
-    pub fn points(&self) -> usize {
-        self.lines.len() - 1
-    }
-
     /// Writes the certificate: JSON, one object a line.
     ///
     /// # Errors

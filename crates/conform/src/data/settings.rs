@@ -56,7 +56,7 @@ pub enum States {
 
 impl States {
     /// Returns how many of a number of states, positions before velocities, are rows.
-    pub fn rows(self, states: usize) -> usize {
+    pub(crate) fn rows(self, states: usize) -> usize {
         match self {
             Self::All => states,
             Self::Positions => states / 2,

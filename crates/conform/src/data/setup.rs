@@ -124,19 +124,6 @@ impl Setup {
         self
     }
 
-    /// Sets the nominal initial state of the suite of a name, 2n.
-    #[must_use]
-    pub fn with_nominal_start(mut self, suite: impl Into<String>, state: Vec<f64>) -> Self {
-        self.nominal_starts.insert(suite.into(), state);
-        self
-    }
-
-    /// Takes nothing off the recorded inputs.
-    #[must_use]
-    pub fn without_correction(self) -> Self {
-        Self { correction: None, ..self }
-    }
-
     /// Returns whether the model's input is the recorded one, with nothing taken off it along the
     /// nominal motion.
     pub(crate) fn is_recorded_input(&self) -> bool {

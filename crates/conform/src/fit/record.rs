@@ -262,7 +262,7 @@ impl FittedParameter {
     /// Returns whether the fit moved the value further than the recordings of the identification
     /// allow: it compensates for model error and is no measurement.
     #[must_use]
-    pub fn is_beyond_error(&self) -> bool {
+    pub(crate) fn is_beyond_error(&self) -> bool {
         let moved = (self.fitted - self.identified).abs();
         self.standard_error.is_some_and(|error| moved > MOST_ERRORS * error)
     }
@@ -299,4 +299,25 @@ pub struct TorquePrediction {
     pub identified: f64,
     /// The root mean square with the fitted model.
     pub fitted: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_beyond_its_error_from_three_standard_errors_on() {
+        let of = |standard_error: Option<f64>| FittedParameter {
+            group: Group::Viscous,
+            name: "viscous friction".into(),
+            joint: 1,
+            unit: "N m/(rad/s)".into(),
+            identified: 2.0,
+            standard_error,
+            fitted: 2.5,
+            factor: None,
+        };
+        let errors = [Some(0.1), Some(0.2), None];
+        assert_eq!(errors.map(|error| of(error).is_beyond_error()), [true, false, false]);
+    }
 }

@@ -251,15 +251,6 @@ impl Model {
         .sealed()
     }
 
-    /// Reads a model file and checks that its parts fit together.
-    ///
-    /// # Errors
-    ///
-    /// As [`open`](Self::open).
-    pub fn load(path: &Path) -> Result<Self> {
-        Ok(Self::open(path)?.0)
-    }
-
     /// Reads a model file, checks that its parts fit together, and returns what a problem with
     /// other recordings needs of it: the robot, the model bit by bit as the file has it, and the
     /// settings.
@@ -334,14 +325,6 @@ impl Model {
             input_set: self.input_set.clone(),
             noise_set: self.noise_set.clone(),
         }
-    }
-
-    /// Returns whether one of these recordings, by its SHA-256, is among the recordings that the
-    /// model was fitted to, or may be: where it [cannot be known](Self::knows_of), they count as
-    /// used in the fit.
-    #[must_use]
-    pub fn was_fitted_to(&self, recordings: &Recordings) -> bool {
-        self.knows_of(recordings).unwrap_or(true)
     }
 
     /// Returns whether one of these recordings is among the recordings that the model was fitted to

@@ -171,7 +171,7 @@ impl DataRecord {
 
     /// Returns whether the recordings are listed one by one.
     #[must_use]
-    pub fn are_listed(&self) -> bool {
+    pub(crate) fn are_listed(&self) -> bool {
         self.root.is_none()
     }
 

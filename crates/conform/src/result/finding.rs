@@ -28,9 +28,14 @@ pub enum Severity {
 /// use reachtube_conform::Finding;
 /// use reachtube_conform::result::{Code, FrontEnd, Remedy, Severity};
 ///
+/// let remedy = Remedy {
+///     setting: "until".into(),
+///     value: "1.204".into(),
+///     effect: "uses only the samples before.".into(),
+/// };
 /// let finding = Finding {
 ///     place: Some("suite A".into()),
-///     remedy: Some(Remedy::until(1.204)),
+///     remedy: Some(remedy),
 ///     ..Finding::new(Severity::Failure, Code::SetLost, "The reachable set ends at 1.204 s.")
 /// };
 /// assert_eq!(

@@ -52,7 +52,7 @@ impl Remedy {
 
     /// Makes the remedy that uses only the samples before `time`, s.
     #[must_use]
-    pub fn until(time: f64) -> Self {
+    pub(crate) fn until(time: f64) -> Self {
         Self::new("until", format!("{time:.3}"))
     }
 

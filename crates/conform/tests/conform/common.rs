@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
+use reachtube_conform::fleet::Fold;
 use reachtube_conform::{
     Check, Conformance, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
 use reachtube_reach::{LinearSystem, TimeGrid};
-use reachtube_recordings::DataSet;
+use reachtube_recordings::{DataSet, RunSource};
 use reachtube_robot::Robot;
 
 /// Returns a folder of real recordings. Tests that need one are ignored unless asked for.
@@ -45,6 +46,13 @@ pub(crate) fn read_with(setup: Setup, folder: &Path, names: &[&str]) -> Problem 
 /// Finds and proves the smallest sets.
 pub(crate) fn conform_all(problem: &Problem) -> Conformance {
     conform(problem, &Silent, None).unwrap()
+}
+
+/// Folds all recordings of a source.
+pub(crate) fn fold_of(setup: &Setup, runs: &dyn RunSource) -> Fold {
+    let mut fold = Fold::new(setup).unwrap();
+    fold.take_source(runs, 0).unwrap();
+    fold
 }
 
 /// Checks recordings against a model, as its file would.

@@ -33,7 +33,7 @@ fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
     let verdict = check(&read, &same, &Tube::new(&same, read.sets()).unwrap()).unwrap();
     assert!(verdict.verdict.conformant, "{:?}", verdict.verdict);
     // Without the correction the recordings leave the same sets.
-    let none = same.setup().clone().without_correction();
+    let none = Setup::new(same.robot().clone(), same.settings().clone()).unwrap();
     let other = same.with_setup(none);
     let verdict = check(&read, &other, &Tube::new(&other, read.sets()).unwrap()).unwrap();
     assert!(!verdict.verdict.conformant);

@@ -1,7 +1,7 @@
 //! Folds of recordings give the model files of the recordings, to the last bit, however they are
 //! grouped and in whatever order they come.
 
-use crate::common::{Disturbed, Random, grid, two_joints};
+use crate::common::{Disturbed, Random, fold_of, grid, two_joints};
 use proptest::prelude::*;
 use reachtube_abstraction::{Abstraction, ModelKind, OperatingBox};
 use reachtube_conform::fleet::{Fold, OnDefect};
@@ -111,7 +111,7 @@ proptest! {
         let runs = campaign(&robot, &SUITES);
         let setup = setup(&robot, |_| {});
         let fold = grouped(&setup, &runs, &order, &parts, &merges);
-        let whole = Fold::of_source(&setup, &runs, 0).unwrap();
+        let whole = fold_of(&setup, &runs);
         prop_assert_eq!(fold.to_bytes(), whole.to_bytes());
         let problem = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
         let once = read(&setup, &runs);
@@ -192,15 +192,14 @@ fn a_fold_of_many_runs_differs_from_reading_in_the_list_of_recordings_alone() {
     let robot = two_joints();
     let runs = campaign(&robot, &[("A", 700), ("C", 310)]);
     let setup = setup(&robot, |_| {});
-    let fold = Fold::of_source(&setup, &runs, 0).unwrap();
-    let root = fold.root();
+    let fold = fold_of(&setup, &runs);
     let problem = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
     let once = read(&setup, &runs);
     assert_eq!(problem.recordings().notes, once.recordings().notes);
     let value =
         |problem| -> serde_json::Value { serde_json::from_str(&model_of(problem)).unwrap() };
     let (mut own, mut other) = (value(&problem), value(&once));
-    assert_eq!(own["data"]["root"], root);
+    assert_eq!(own["data"]["root"], problem.recordings().root);
     assert_eq!(own["data"]["suites"][1]["run_count"], 310);
     assert_eq!(other["data"]["suites"][1]["runs"].as_array().unwrap().len(), 310);
     assert_eq!(once.recordings().root, root);
@@ -294,12 +293,12 @@ fn what_cannot_be_known_to_be_new_counts_as_used() {
     let setup = setup(&robot, |_| {});
     let large = campaign(&robot, &[("A", 1100)]);
     let other = seeded(&robot, &[("C", 3)], 8);
-    let fold = Fold::of_source(&setup, &large, 0).unwrap();
+    let fold = fold_of(&setup, &large);
     let problem = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
     let model = Model::new(&problem, &conform(&problem, &Silent, None).unwrap());
-    assert!(!model.data.are_listed() && model.data.run_count() == 1100);
+    assert!(model.data.root.is_some() && model.data.run_count() == 1100);
     let new = read(&setup, &other);
-    assert!(model.was_fitted_to(new.recordings()));
+    assert_eq!(model.knows_of(new.recordings()), None);
     let tube = Tube::new(&new, model.sets()).unwrap();
     let answer = check(&model, &new, &tube).unwrap();
     assert!(answer.trust.is_none() && answer.rates.is_none());
@@ -360,7 +359,7 @@ fn what_a_fold_cannot_do_is_refused_by_name() {
     let explain = setup(&robot, |settings| settings.explain = Some(Tolerance::default()));
     assert!(refusal(Fold::new(&explain)).contains("(--explain none)"));
     let setup_of = setup(&robot, |_| {});
-    let fold = Fold::of_source(&setup_of, &runs, 0).unwrap();
+    let fold = fold_of(&setup_of, &runs);
     // The same recording twice, another setup, damage.
     let twice = fold.clone().merge(fold.clone());
     assert!(matches!(twice, Err(Error::Fold(why)) if why.problem.contains("same place")));

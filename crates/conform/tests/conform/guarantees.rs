@@ -40,9 +40,9 @@ fn models_of_one_folder_that_the_same_motions_calibrated_are_counted() {
     let text = finding.unwrap().text;
     assert!(text.contains("(2 in 3)") && text.contains("counts the 2 models"), "{text}");
     second.save(path("second.json")).unwrap();
-    assert_eq!(Model::load(&path("second.json")).unwrap(), second);
+    assert_eq!(Model::open(&path("second.json")).unwrap().0, second);
     // The first file is counted with the second one when it is read.
-    let counted = Model::load(&path("first.json")).unwrap().among_others(&path("first.json"));
+    let counted = Model::open(&path("first.json")).unwrap().0.among_others(&path("first.json"));
     assert_eq!(counted.trust.average_probability, Some(0.5));
     // Three models of two motions leave nothing to state.
     let third = calibrated(0.1, &["c", "d"]).among_others(&path("third.json"));

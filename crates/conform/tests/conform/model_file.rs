@@ -92,7 +92,7 @@ fn suites_without_a_nominal_start_and_suites_that_start_elsewhere_are_named() {
 fn a_file_whose_content_was_changed_is_refused() {
     let (robot, folder) = (two_joints(), tempfile::tempdir().unwrap());
     let path = fitted(&robot, folder.path());
-    let model = Model::load(&path).unwrap();
+    let model = Model::open(&path).unwrap().0;
     let changes: [fn(&mut Model); 5] = [
         |model| model.trust.violation_probability = 0.01,
         |model| model.data.suites[0].name = "C".into(),
@@ -105,7 +105,7 @@ fn a_file_whose_content_was_changed_is_refused() {
         change(&mut changed);
         let text = changed.to_json().replace(&sealed(&changed), &model.sha256);
         std::fs::write(&path, text).unwrap();
-        let Err(Error::ModelFile { problem, .. }) = Model::load(&path) else {
+        let Err(Error::ModelFile { problem, .. }) = Model::open(&path) else {
             panic!("a changed file was accepted")
         };
         assert!(problem.contains("the file was changed"), "{problem}");

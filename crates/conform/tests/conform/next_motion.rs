@@ -132,7 +132,7 @@ fn a_calibrated_model_is_read_again_and_bounds_other_recordings_as_any_model() {
     assert!(model.cost_lower_bound.is_none() && model.verified);
     let path = folder.path().join("model.json");
     std::fs::write(&path, model.to_json()).unwrap();
-    assert_eq!(Model::load(&path).unwrap(), model);
+    assert_eq!(Model::open(&path).unwrap().0, model);
     let held_out = check_of(&folder, &model, &["d"]);
     let trust = held_out.trust.unwrap();
     assert!(trust.basis.starts_with("hold-out bound") && trust.average_probability.is_none());

@@ -172,7 +172,7 @@ fn sets_of_each_model_enclose_its_runs_and_are_not_wider_than_what_was_there() {
         let model = Model::new(&problem, &found);
         let path = folder.path().join("model.json");
         std::fs::write(&path, model.to_json()).unwrap();
-        let loaded = Model::load(&path).unwrap();
+        let loaded = Model::open(&path).unwrap().0;
         assert_eq!(loaded, model);
         assert!(check_against(&loaded, folder.path(), &[]).verdict.conformant);
     }

@@ -12,8 +12,7 @@ use reachtube_conform::claim::Certificate;
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::{Centre, InitialLimit, States};
 use reachtube_conform::{
-    Conformance, Error, Model, Notion, Problem, Settings, Setup, Tube, UncertaintySets, check,
-    reach,
+    Conformance, Error, Model, Notion, Problem, Settings, Tube, UncertaintySets, check, reach,
 };
 use reachtube_reach::{Disturbance, Hyperrectangle, LinearSystem};
 use reachtube_recordings::Torque;
@@ -229,8 +228,7 @@ fn motions_inside_the_sets_are_inside_and_a_smaller_set_loses_some() {
         })
         .collect();
     write_data_set(other.path(), &[("a", runs)]);
-    let setup = Setup::new(two_joints(), model.settings.clone()).unwrap();
-    let setup = setup.with_nominal_start("a", start.clone());
+    let (_, setup) = Model::parse(&model.to_json(), "model".as_ref()).unwrap();
     let others = read_with(setup, other.path(), &[]);
     let tube = Tube::new(&others, model.sets()).unwrap();
     let verdict = check(&model, &others, &tube).unwrap().verdict;
@@ -318,7 +316,7 @@ fn a_certificate_has_a_line_for_every_point() {
     let mut text = Vec::new();
     certificate.write(&mut text).unwrap();
     let text = String::from_utf8(text).unwrap();
-    assert_eq!((certificate.points(), text.lines().count()), (2 * 3 * 19 * 2, 2 * 3 * 19 * 2 + 1));
+    assert_eq!(text.lines().count(), 2 * 3 * 19 * 2 + 1);
     let head: serde_json::Value = serde_json::from_str(text.lines().next().unwrap()).unwrap();
     assert_eq!(head["notion"], "phase-plane");
 }

@@ -4,7 +4,7 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::common::{Disturbed, Random, grid, two_joints};
+use crate::common::{Disturbed, Random, fold_of, grid, two_joints};
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::fleet::{
     FleetProblem, Fold, OnDefect, PartPoints, PartReader, PointServer, check_elsewhere,
@@ -198,7 +198,7 @@ fn points_of_other_recordings_are_refused() {
         "{refused}"
     );
     // No part has the points.
-    let fold = Fold::of_source(&setup, &runs, 0).unwrap();
+    let fold = fold_of(&setup, &runs);
     let problem = Problem::of_fold(setup.clone(), fold, OnDefect::Refuse).unwrap();
     assert!(matches!(conform(&problem, &Silent, None), Err(Error::Fold(_))));
     for bytes in [&b""[..], b"nonsense"] {

@@ -374,7 +374,7 @@ fn a_model_survives_its_file() {
     let model = Model::new(&problem, &found);
     let path = folder.path().join("model.json");
     std::fs::write(&path, model.to_json()).unwrap();
-    let loaded = Model::load(&path).unwrap();
+    let loaded = Model::open(&path).unwrap().0;
     assert_eq!(loaded, model);
     assert!(check_against(&loaded, folder.path(), &[]).verdict.conformant);
 }

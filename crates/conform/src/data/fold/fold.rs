@@ -43,7 +43,8 @@ const LISTED_BELOW: u64 = 1000;
 ///     let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18]).unwrap();
 ///     let mut runs = MemoryRuns::default();
 ///     runs.push(&format!("run{place}"), Some("A"), None, run);
-///     Fold::of_source(&setup, &runs, place).map(|fold| fold.to_bytes())
+///     let mut fold = Fold::new(&setup).unwrap();
+///     fold.take_source(&runs, place).map(|()| fold.to_bytes())
 /// };
 /// let (first, second) = (fold(0, 0.0)?, fold(1, 0.001)?);
 /// let mut all = Fold::from_bytes(&setup, &second)?;
@@ -133,20 +134,8 @@ impl Fold {
         Self { context: Arc::clone(&self.context), state, fitted: self.fitted.clone() }
     }
 
-    /// Folds all recordings of a source that belong to a suite, on all cores. The recording with
+    /// Takes all recordings of a source that belong to a suite, on all cores. The recording with
     /// index i has place `first` + i in the manifest.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new) and [`take`](Self::take).
-    pub fn of_source(setup: &Setup, source: &dyn RunSource, first: u64) -> Result<Self> {
-        let mut fold = Self::new(setup)?;
-        fold.take_source(source, first)?;
-        Ok(fold)
-    }
-
-    /// Takes all recordings of a source that belong to a suite, on all cores, as
-    /// [`of_source`](Self::of_source) does.
     ///
     /// # Errors
     ///
@@ -287,12 +276,6 @@ impl Fold {
     #[must_use]
     pub fn run_count(&self) -> u64 {
         self.state.runs
-    }
-
-    /// Returns the root of the Merkle tree over the recordings' entries, in lower-case hexadecimal.
-    #[must_use]
-    pub fn root(&self) -> String {
-        self.state.tree.root()
     }
 
     /// Returns the number of recordings that are left out because they have defects.
