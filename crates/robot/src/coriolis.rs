@@ -29,25 +29,6 @@ impl Robot {
         self.newton_euler([sin, cos, qd, zero_acceleration], GravityLoad::None, links, c);
     }
 
-    /// Computes the Coriolis and gravity torque c(q, q̇) + g(q) of (3) \[N m\].
-    ///
-    /// All slices have one entry per joint: `sin`, `cos` of [`Robot::sin_cos`] and `qd` \[rad/s\].
-    ///
-    /// # Guarantee
-    ///
-    /// Over `Interval`: an outer enclosure.
-    pub fn bias_torque<S: Scalar>(
-        &self,
-        sin: &[S],
-        cos: &[S],
-        qd: &[S],
-        ws: &mut Workspace<S>,
-        out: &mut [S],
-    ) {
-        let Workspace { links, zero_acceleration, .. } = ws;
-        self.newton_euler([sin, cos, qd, zero_acceleration], self.gravity_load(), links, out);
-    }
-
     /// Returns the Coriolis and centripetal torque c(q, q̇) \[N m\] at q \[rad\], q̇ \[rad/s\].
     pub fn coriolis_torque(&self, q: &[f64], qd: &[f64]) -> DVector<f64> {
         let (sin, cos) = self.sin_cos(q);

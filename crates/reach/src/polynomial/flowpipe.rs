@@ -66,7 +66,6 @@ pub struct Flowpipe {
     dimension: usize,
     samples: Vec<Interval>,
     steps: Vec<Interval>,
-    generators: usize,
     outcome: FlowpipeOutcome,
 }
 
@@ -172,7 +171,6 @@ impl Flowpipe {
             .zip(&other.samples)
             .for_each(|(own, other)| *own = own.hull(*other));
         self.steps.iter_mut().zip(&other.steps).for_each(|(own, other)| *own = own.hull(*other));
-        self.generators = self.generators.max(other.generators);
         self
     }
 
@@ -191,7 +189,6 @@ impl Flowpipe {
                 whole.steps.extend((0..n).map(side));
             }
         }
-        whole.generators = self.generators;
         whole.outcome = match self.outcome {
             FlowpipeOutcome::Failed { state, widths, .. } => {
                 FlowpipeOutcome::Failed { time: grid.times()[samples - 1], state, widths }
@@ -206,7 +203,6 @@ impl Flowpipe {
             dimension: n,
             samples: Vec::with_capacity(n * samples),
             steps: Vec::with_capacity(n * samples),
-            generators: 0,
             outcome: FlowpipeOutcome::Reached,
         }
     }
@@ -216,7 +212,6 @@ impl Flowpipe {
             visit(self.len(), propagator.zonotope());
         }
         propagator.hull(&mut self.samples);
-        self.generators = propagator.generators();
     }
 
     /// Returns the number of samples up to which the sets are valid.
@@ -237,11 +232,6 @@ impl Flowpipe {
     /// Returns the hull of all states over the step from sample k to k + 1, N intervals.
     pub fn step(&self, k: usize) -> &[Interval] {
         &self.steps[k * self.dimension..(k + 1) * self.dimension]
-    }
-
-    /// Returns the largest number of stored generators at the last sample over all pieces.
-    pub fn generators(&self) -> usize {
-        self.generators
     }
 
     /// Returns the outcome.

@@ -17,9 +17,6 @@ pub(crate) trait SetPropagator {
 
     /// Returns a copy of the set as a zonotope.
     fn zonotope(&self) -> Zonotope;
-
-    /// Returns the number of stored generators.
-    fn generators(&self) -> usize;
 }
 
 /// A step without a verified enclosure.

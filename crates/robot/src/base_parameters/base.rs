@@ -138,15 +138,6 @@ impl BaseParameters {
             .map(|k| k.and_then(|k| s.get(k)).copied().unwrap_or(0.0))
     }
 
-    /// Returns the parameters that do not affect torque, neither alone nor in combination.
-    pub fn unidentifiable(&self) -> Vec<Parameter> {
-        let identifiable = |k: &usize| self.combinations.column(*k).amax() > TOLERANCE;
-        (0..self.parameters.len())
-            .filter(|k| !identifiable(k))
-            .map(|k| self.parameters[k])
-            .collect()
-    }
-
     /// Returns the base parameters β = K θ of parameter values θ, each in its SI unit.
     ///
     /// # Panics
@@ -154,18 +145,6 @@ impl BaseParameters {
     /// Panics if there is not one value per parameter.
     pub fn reduce(&self, theta: &[f64]) -> DVector<f64> {
         &self.combinations * DVector::from_column_slice(theta)
-    }
-
-    /// Returns the parameters θ that have the base parameters β and are 0 for dependent columns.
-    ///
-    /// # Panics
-    ///
-    /// Panics if there is not one value per base parameter.
-    pub fn lift(&self, beta: &[f64]) -> DVector<f64> {
-        assert_eq!(beta.len(), self.count(), "one value per base parameter");
-        let mut theta = DVector::zeros(self.parameters.len());
-        self.independent.iter().zip(beta).for_each(|(k, b)| theta[*k] = *b);
-        theta
     }
 
     /// Returns the parameters θ with the base parameters β that are nearest to a prior in the

@@ -166,13 +166,13 @@ fn the_base_regressor_gives_the_same_torque() {
     let scale = tau.amax();
     assert!((base.select(&y) * &beta - &tau).amax() < 1e-11 * scale);
     let near = base.lift_near(beta.as_slice(), &vec![1.0; parameters.len()]);
-    for lifted in [base.lift(beta.as_slice()), near.clone()] {
-        assert!((base.reduce(lifted.as_slice()) - &beta).amax() < 1e-12 * beta.amax());
-        assert!((&y * lifted - &tau).amax() < 1e-11 * scale);
-    }
+    assert!((base.reduce(near.as_slice()) - &beta).amax() < 1e-12 * beta.amax());
+    assert!((&y * &near - &tau).amax() < 1e-11 * scale);
     // The result is nearer to the prior than θ, which has the same base parameters.
     let distance = |x: &[f64]| x.iter().map(|x| (x - 1.0).powi(2)).sum::<f64>();
     assert!(distance(near.as_slice()) < distance(&theta));
-    let unidentifiable: Vec<_> = base.unidentifiable().iter().map(Parameter::to_string).collect();
+    let moves_nothing = |k: &usize| base.combinations().column(*k).amax() < 1e-9;
+    let unidentifiable = (0..parameters.len()).filter(moves_nothing);
+    let unidentifiable: Vec<_> = unidentifiable.map(|k| parameters[k].to_string()).collect();
     assert_eq!(unidentifiable.join(" "), "m1 mx1 my1 mz1 Ixx1 Ixy1 Ixz1 Iyz1 Izz1");
 }

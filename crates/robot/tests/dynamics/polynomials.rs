@@ -125,9 +125,12 @@ impl Motion {
 
     fn bias(&self, robot: &Robot) -> Vec<TaylorPolynomial> {
         let (sin, cos) = self.sin_cos();
-        let mut out = vec![TaylorPolynomial::from(0.0); robot.joint_count()];
-        robot.bias_torque(&sin, &cos, &self.qd, &mut Workspace::new(robot), &mut out);
-        out
+        let zeros =
+            || -> Vec<TaylorPolynomial> { vec![TaylorPolynomial::from(0.0); robot.joint_count()] };
+        let (mut ws, mut coriolis, mut gravity) = (Workspace::new(robot), zeros(), zeros());
+        robot.coriolis(&sin, &cos, &self.qd, &mut ws, &mut coriolis);
+        robot.gravity(&sin, &cos, &mut ws, &mut gravity);
+        coriolis.into_iter().zip(gravity).map(|(c, g)| c + g).collect()
     }
 }
 

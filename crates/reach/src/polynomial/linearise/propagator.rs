@@ -50,8 +50,4 @@ impl SetPropagator for ZonotopePropagator<'_> {
     fn zonotope(&self) -> Zonotope {
         self.set.zonotope(self.step.directions())
     }
-
-    fn generators(&self) -> usize {
-        self.set.generators.len()
-    }
 }

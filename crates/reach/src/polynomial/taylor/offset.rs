@@ -31,11 +31,6 @@ impl Offset {
         }
     }
 
-    /// Returns the number of generators.
-    pub(crate) fn count(&self) -> usize {
-        self.generators.len()
-    }
-
     /// Iterates over the entries of all generators, one generator after the other.
     pub(crate) fn generators(&self) -> impl Iterator<Item = f64> {
         (0..self.generators.len()).flat_map(|i| self.generators.get(i))

@@ -47,8 +47,4 @@ impl SetPropagator for TaylorPropagator {
     fn zonotope(&self) -> Zonotope {
         self.set.zonotope()
     }
-
-    fn generators(&self) -> usize {
-        self.set.offset.count()
-    }
 }
