@@ -22,15 +22,10 @@ impl Layout {
         Self { joints, trigonometric: kind != ModelKind::One }
     }
 
-    /// Returns the number of variables: 2n or 4n.
+    /// Returns the number of variables, 2n or 4n. There are as many states: (q, q̇), or (q, q̇,
+    /// sin q, cos q).
     #[must_use]
-    pub fn variables(self) -> usize {
-        if self.trigonometric { 4 * self.joints } else { 2 * self.joints }
-    }
-
-    /// Returns the number of states: 2n for (q, q̇), or 4n for (q, q̇, sin q, cos q).
-    #[must_use]
-    pub(crate) fn states(self) -> usize {
+    pub(crate) fn variables(self) -> usize {
         if self.trigonometric { 4 * self.joints } else { 2 * self.joints }
     }
 

@@ -105,7 +105,7 @@ impl PolynomialModel {
     /// Returns the number of states: 2n or 4n.
     #[must_use]
     pub fn states(&self) -> usize {
-        self.layout.states()
+        self.layout.variables()
     }
 
     /// Returns the variables of the polynomials and their order.

@@ -137,7 +137,7 @@ impl Log {
 
     /// Returns the topics of joint states that were read.
     #[must_use]
-    pub fn topics(&self) -> &[String] {
+    pub(crate) fn topics(&self) -> &[String] {
         &self.topics
     }
 

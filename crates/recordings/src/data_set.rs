@@ -70,12 +70,6 @@ impl DataSet {
     pub(crate) fn root(&self) -> &Path {
         &self.root
     }
-
-    /// Returns the CSV files in the folder that the index does not list.
-    #[must_use]
-    pub fn unlisted(&self) -> &[PathBuf] {
-        &self.unlisted
-    }
 }
 
 impl RunSource for DataSet {

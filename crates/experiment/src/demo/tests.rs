@@ -73,7 +73,7 @@ fn the_folder_is_a_data_set() {
     assert_eq!(text.lines().next(), Some(header));
     assert_eq!(text.lines().count(), 1 + 451, "from a tenth of 2 s to their end, both included");
     let data = DataSet::open(folder.path()).unwrap();
-    assert!(data.unlisted().is_empty());
+    assert!(data.notes().is_empty(), "{:?}", data.notes());
     for (index, entry) in data.runs().iter().enumerate() {
         let run = data.read(index, &ReadOptions::default()).unwrap();
         assert_eq!(entry.sha256.as_ref(), Some(&run.sha256));
