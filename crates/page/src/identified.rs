@@ -6,7 +6,7 @@ use super::error::Error;
 use super::identified_arm::arm_svgs;
 use super::identified_charts::{RESIDUAL_HEIGHT, load_chart, torque_charts, viscous_chart};
 use super::identified_parameters::parameter_svg;
-use super::skeleton::{document, pair_of_lists, section, wide_table};
+use super::skeleton::{document, named_rows, pair_of_lists, section, wide_table};
 use super::tables;
 use super::text::Text;
 use maud::{Markup, PreEscaped, html};
@@ -69,15 +69,7 @@ fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> Markup {
     let head = html! {
         @for name in head { th scope="col" { (Text(name)) } }
     };
-    let rows = html! {
-        @for cells in rows {
-            tr {
-                th scope="row" { (Text(&cells[0])) }
-                @for cell in &cells[1..] { td { (Text(cell)) } }
-            }
-        }
-    };
-    wide_table("long", caption, &head, &rows)
+    wide_table("long", caption, &head, &named_rows(rows))
 }
 
 fn percent(part: f64) -> String {

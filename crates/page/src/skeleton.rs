@@ -4,6 +4,7 @@ use super::terms::Explained;
 use super::text::{Text, capital};
 use super::text_table::TextTable;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use reachtube_conform::result::Table;
 
 const STYLE: &str = include_str!("page.css");
 /// The browser enforces that the page loads nothing from anywhere, but for a library that is a file
@@ -107,13 +108,25 @@ pub fn long_table(table: &TextTable) -> Markup {
     let head = html! {
         @for name in &table.header { th scope="col" { (Explained(name)) } }
     };
-    let rows = html! {
-        @for cells in &table.rows {
+    wide_table("long", &table.title, &head, &named_rows(&table.rows))
+}
+
+/// Returns a table of the library; all but names are numbers.
+pub(super) fn laid_out(table: &Table) -> Markup {
+    let head = html! {
+        @for name in &table.header { th scope="col" { (Text(name)) } }
+    };
+    wide_table("sets", &capital(&table.title), &head, &named_rows(&table.rows))
+}
+
+/// Returns rows of texts; the first cell of each names it.
+pub(super) fn named_rows(rows: &[Vec<String>]) -> Markup {
+    html! {
+        @for cells in rows {
             tr {
                 th scope="row" { (Text(&cells[0])) }
                 @for cell in &cells[1..] { td { (Text(cell)) } }
             }
         }
-    };
-    wide_table("long", &table.title, &head, &rows)
+    }
 }

@@ -11,9 +11,9 @@ use reachtube_verify::{AnnexRow, Brakes, StopStudy, annex_table, recorded_table}
 
 use crate::chart::{Chart, Series, chart_svg};
 use crate::error::Error;
-use crate::skeleton::{document, section, verdict, wide_table};
+use crate::skeleton::{document, laid_out, section, verdict};
 use crate::terms::Explained;
-use crate::text::{Text, capital};
+use crate::text::Text;
 
 /// The file name of the page.
 pub const STOP_PAGE_FILE: &str = "stop.html";
@@ -86,22 +86,6 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
                     out as ISO 10218-1, Annex B, asks";
     out.write_all(document(&title, subtitle, &body, &Markup::default()).as_bytes())?;
     Ok(())
-}
-
-/// Returns a table of the library; all but names are numbers.
-fn laid_out(table: &Table) -> Markup {
-    let head = html! {
-        @for name in &table.header { th scope="col" { (Text(name)) } }
-    };
-    let rows = html! {
-        @for cells in &table.rows {
-            tr {
-                th scope="row" { (Text(&cells[0])) }
-                @for cell in &cells[1..] { td { (Text(cell)) } }
-            }
-        }
-    };
-    wide_table("sets", &capital(&table.title), &head, &rows)
 }
 
 /// Returns the rows of category 1; rows that differ only in speed share a line.

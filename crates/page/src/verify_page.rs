@@ -3,7 +3,6 @@
 use std::io::Write;
 
 use maud::{Markup, PreEscaped, html};
-use reachtube_conform::result::Table;
 use reachtube_scalar::number::counted;
 use reachtube_verify::{
     Answer, Body, Obstacle, Scene, Solid, SweptCapsule, Verification, picture, summary, worst_first,
@@ -13,8 +12,8 @@ use serde::Serialize;
 use crate::error::Error;
 use crate::interactive::in_script;
 use crate::library::compressed_library;
-use crate::skeleton::{document, section, verdict, wide_table};
-use crate::text::{Text, capital};
+use crate::skeleton::{document, laid_out, section, verdict};
+use crate::text::Text;
 
 /// The file name of the page.
 pub const VERIFY_PAGE_FILE: &str = "verify.html";
@@ -246,20 +245,4 @@ fn numbers(capsules: &[SweptCapsule]) -> Vec<[f64; 7]> {
     };
     let all: Vec<[f64; 7]> = capsules.iter().map(rounded).collect();
     if all.iter().flatten().all(|x| x.is_finite()) { all } else { Vec::new() }
-}
-
-/// Returns a table of the library.
-fn laid_out(table: &Table) -> Markup {
-    let head = html! {
-        @for name in &table.header { th scope="col" { (Text(name)) } }
-    };
-    let rows = html! {
-        @for cells in &table.rows {
-            tr {
-                th scope="row" { (Text(&cells[0])) }
-                @for cell in &cells[1..] { td { (Text(cell)) } }
-            }
-        }
-    };
-    wide_table("sets", &capital(&table.title), &head, &rows)
 }
