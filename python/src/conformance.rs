@@ -11,7 +11,6 @@ use reachtube::conform::{
     SuiteReach,
 };
 use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
-use reachtube::recordings::GapLimit;
 use reachtube::{Progress, Torque, write};
 use serde_json::{Map, Value};
 
@@ -44,7 +43,7 @@ fn settings(text: &str, joints: usize) -> Result<(Settings, Option<Option<Tolera
         tried.map_err(|error| Failure::Setting(format!("{name}: {error}")))?;
     }
     let settings: Settings = serde_json::from_value(all).map_err(Failure::setting)?;
-    let settings = Settings { gap_limit: gap_limit(max_gap), ..settings };
+    let settings = Settings { gap_limit: max_gap.into(), ..settings };
     settings.validate(joints)?;
     let explain = chooses_explain.then_some(settings.explain);
     Ok((settings, explain))
@@ -57,10 +56,6 @@ fn take<T: serde::de::DeserializeOwned>(
     let Some(value) = given.remove(name) else { return Ok(None) };
     let wrong = |error| Failure::Setting(format!("{name}: {error}"));
     serde_json::from_value(value).map(Some).map_err(wrong)
-}
-
-fn gap_limit(max_gap: Option<f64>) -> GapLimit {
-    max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
 }
 
 /// Returns what a nominal model is made of.
@@ -158,7 +153,7 @@ pub(crate) fn among_others(py: Python<'_>, text: String, path: PathBuf) -> PyRes
 /// Sets what differs from a model's settings.
 pub(crate) fn differing(setup: Setup, mut given: Map<String, Value>) -> Result<Setup> {
     let (notion, until) = (take(&mut given, "notion")?, take(&mut given, "until")?);
-    Ok(setup.judged_by(notion, until, gap_limit(take(&mut given, "max_gap")?)))
+    Ok(setup.judged_by(notion, until, take::<f64>(&mut given, "max_gap")?.into()))
 }
 
 /// What is read for a model: the recordings, and what differs from the model's settings.
@@ -179,7 +174,7 @@ impl Wanted {
             .suites(self.suites)
             .notion(take(&mut given, "notion")?)
             .until(take(&mut given, "until")?)
-            .gap_limit(gap_limit(take(&mut given, "max_gap")?))
+            .gap_limit(take::<f64>(&mut given, "max_gap")?.into())
             .keep(self.keep);
         Ok(job.open(watch)?)
     }

@@ -61,8 +61,7 @@ fn runs(logs: &[Log], cutting: &Cutting) -> Result<Vec<NamedRun>> {
     if cutting.repeats {
         find_repeats(logs, &mut cuts, cutting.marker.is_none());
     }
-    let limit = cutting.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
-    let source = convert(logs, &cuts, limit)?.into_runs();
+    let source = convert(logs, &cuts, cutting.max_gap.into())?.into_runs();
     let options =
         ReadOptions { gap_limit: GapLimit::Seconds(f64::INFINITY), ..ReadOptions::default() };
     let named = |(index, entry): (usize, &reachtube::recordings::RunEntry)| {

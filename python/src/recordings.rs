@@ -238,8 +238,7 @@ impl NativeSource {
     fn inspection(&self, py: Python<'_>, max_gap: Option<f64>) -> PyResult<Option<String>> {
         let Some(data) = self.folder.clone() else { return Ok(None) };
         watched(py, None, move |_| {
-            let limit = max_gap.map_or(GapLimit::Usual, GapLimit::Seconds);
-            let found = inspect(&data, limit);
+            let found = inspect(&data, max_gap.into());
             Ok(Some(serde_json::to_string(&found).expect("an inspection has string keys")))
         })
     }

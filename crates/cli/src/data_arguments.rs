@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use reachtube::recordings::{GapLimit, Torque};
+use reachtube::recordings::Torque;
 
 use crate::option_values::{Choices, choice, seconds, trimmed};
 
@@ -46,9 +46,4 @@ pub(crate) struct ModelArguments {
     pub model: PathBuf,
     #[command(flatten)]
     pub data: DataArguments,
-}
-
-/// Returns the limit that `--max-gap` sets.
-pub(crate) fn gap_limit(max_gap: Option<f64>) -> GapLimit {
-    max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
 }

@@ -8,7 +8,7 @@ use reachtube::conform::{
 use reachtube::export::ExportCase;
 use reachtube::pipeline::check_job;
 
-use crate::data_arguments::{DataArguments, ModelArguments, gap_limit};
+use crate::data_arguments::{DataArguments, ModelArguments};
 use crate::error::{Error, Result};
 use crate::output;
 use crate::progress::Progress;
@@ -55,7 +55,7 @@ impl OpenedCheck {
             .suites(&args.suites)
             .notion(notion)
             .until(args.until)
-            .gap_limit(gap_limit(args.max_gap))
+            .gap_limit(args.max_gap.into())
             .keep(keep);
         let bar = Progress::new();
         let conform::Opened { model, problem, tube } = job.open(&bar)?;

@@ -21,6 +21,13 @@ pub enum GapLimit {
     Seconds(f64),
 }
 
+impl From<Option<f64>> for GapLimit {
+    /// Takes a limit in seconds; without one, the usual one counts.
+    fn from(seconds: Option<f64>) -> Self {
+        seconds.map_or(Self::Usual, Self::Seconds)
+    }
+}
+
 impl GapLimit {
     /// Returns the longest step allowed, s, in a run with these steps, s, in any order.
     pub(crate) fn longest_step(self, mut steps: Vec<f64>) -> f64 {

@@ -11,7 +11,6 @@ use reachtube_logs::{
 };
 use serde_json::json;
 
-use crate::data_arguments::gap_limit;
 use crate::error::Result;
 use crate::lock_arguments::LockArguments;
 use crate::log_files::{TIMES, log_time, read_log};
@@ -103,7 +102,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         None => whole_logs(&logs),
     };
     let found = repeats(args, &logs, &mut cuts);
-    let recorded = convert(&logs, &cuts, gap_limit(args.max_gap))?;
+    let recorded = convert(&logs, &cuts, args.max_gap.into())?;
     output::claim_all(&recorded.files(&args.out))?;
     let written = recorded.write(&args.out)?;
     output::note(&format!(

@@ -7,7 +7,6 @@ use reachtube::recordings::{DataSet, Inspection, JointSummary, LoggedOptions, Ru
 use reachtube_logs::{LogFiles, inspect_logs};
 use reachtube_robot::Robot;
 
-use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
 use crate::log_files::LogArguments;
@@ -54,7 +53,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         return run_logs(args, json);
     }
     let bar = Progress::of("reading recordings");
-    let inspection = inspect(&DataSet::open(&args.data)?, gap_limit(args.max_gap));
+    let inspection = inspect(&DataSet::open(&args.data)?, args.max_gap.into());
     drop(bar);
     let kinds = kinds(args, inspection.joints)?;
     output::notes(&inspection.notes);
@@ -79,7 +78,7 @@ fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
         columns: &columns,
         gains: false,
         torque: false,
-        gap_limit: gap_limit(args.max_gap),
+        gap_limit: args.max_gap.into(),
         until: None,
     };
     let bar = Progress::of("reading logs");

@@ -39,7 +39,7 @@ pub struct PrepareSettings {
 impl PrepareSettings {
     /// Returns the limit of the times between samples.
     pub(crate) fn gap_limit(&self) -> GapLimit {
-        self.max_gap.map_or(GapLimit::Usual, GapLimit::Seconds)
+        self.max_gap.into()
     }
 }
 

@@ -4,7 +4,6 @@ use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube::conform::{Basis, Settings};
 
 use super::arguments::Arguments;
-use crate::data_arguments::gap_limit;
 use crate::error::{Error, Result};
 
 /// Returns the robot, or the model in the file that `--abstraction` names.
@@ -20,7 +19,7 @@ pub(super) fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
         abstraction: Abstraction { model: args.paper_model, order: args.order },
         expansion_point: ExpansionPoint::from_values(&args.expansion, joints)?,
         until: args.data.until,
-        gap_limit: gap_limit(args.data.max_gap),
+        gap_limit: args.data.max_gap.into(),
         ..Settings::new(args.data.torque.ok_or(Error::NoTorque)?, joints)
     };
     let settings = args.sets.settings(usual, joints)?;
