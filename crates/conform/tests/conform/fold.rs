@@ -202,7 +202,7 @@ fn a_fold_of_many_runs_differs_from_reading_in_the_list_of_recordings_alone() {
     assert_eq!(own["data"]["root"], problem.recordings().root);
     assert_eq!(own["data"]["suites"][1]["run_count"], 310);
     assert_eq!(other["data"]["suites"][1]["runs"].as_array().unwrap().len(), 310);
-    assert_eq!(once.recordings().root, root);
+    assert_eq!(once.recordings().root, problem.recordings().root);
     for value in [&mut own, &mut other] {
         value["data"] = serde_json::Value::Null;
         value["sha256"] = serde_json::Value::Null;
