@@ -232,7 +232,7 @@ def model(
     Every choice that is not given is made from the logs, with its reason, as ``reachtube model``
     does: the recordings are sorted, some motions are held out, the robot is identified if its
     description does not explain the torques, and the horizon is the longest time at which no
-    joint's set is wider than half its motion.
+    joint's set is wider than its motion.
 
     Parameters
     ----------

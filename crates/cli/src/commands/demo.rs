@@ -43,7 +43,7 @@ Example:
 /// Run every step on a simulated arm: record, fit, conform, calibrate, check, report
 ///
 /// The folder receives the recordings, the model, pages, and cell.toml and brakes.toml for `verify`
-/// and `stop`.
+/// and `stop`, which are kept where they exist.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -64,7 +64,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let folder = args.out.join("recordings");
     let path = args.out.join("model.json");
     let pages = [args.out.join("report"), args.out.join("held-out")];
-    let safety = SAFETY.map(|(name, text)| (args.out.join(name), text));
+    // A user may have changed them: they are written once.
+    let safety = SAFETY.map(|(name, text)| (args.out.join(name), text)).into_iter();
+    let safety: Vec<_> = safety.filter(|(path, _)| !path.exists()).collect();
     output::claim_all([&path].into_iter().chain(safety.iter().map(|(path, _)| path)))?;
     output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
     let options = options(args)?;

@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     /// Time up to which the model predicts, above 0 s [default: the longest at which no set is
-    /// wider than half the motion]
+    /// wider than the motion]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub horizon: Option<f64>,
     /// Motions that are held out from every choice, such as M1,N* [default: every fourth]

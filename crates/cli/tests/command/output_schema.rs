@@ -94,7 +94,12 @@ fn results_fit_the_schema() {
 #[test]
 fn a_demo_fits_the_schema() {
     let lab = Lab::new();
+    // A scenario that a user changed is kept.
+    std::fs::create_dir(lab.path("demo")).unwrap();
+    lab.write("demo/cell.toml", "# mine");
     let demo = lab.run("demo --out demo --json").exits(0).json();
+    assert_eq!(lab.read("demo/cell.toml"), "# mine");
+    assert!(lab.read("demo/brakes.toml").contains("torque"));
     fits("demo", &demo);
     for verdict in [&demo["model"], &demo["held_out"]] {
         names_what_it_is_of(verdict, &demo["model"], None);
