@@ -57,6 +57,13 @@ pub(crate) struct Arguments {
     pub robot: VirtualRobotArguments,
 }
 
+/// Returns the files for `verify` and `stop` that a folder lacks. Existing ones may have been changed
+/// by a user.
+fn missing(folder: &Path) -> Vec<(PathBuf, &'static str)> {
+    let files = SAFETY.map(|(name, text)| (folder.join(name), text));
+    files.into_iter().filter(|(path, _)| !path.exists()).collect()
+}
+
 /// Runs the demo. The outcome is the model's verdict on the recordings that it was made from;
 /// motions that were held out may leave its sets, which the demo shows.
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
@@ -64,9 +71,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let folder = args.out.join("recordings");
     let path = args.out.join("model.json");
     let pages = [args.out.join("report"), args.out.join("held-out")];
-    // A user may have changed them: they are written once.
-    let safety = SAFETY.map(|(name, text)| (args.out.join(name), text)).into_iter();
-    let safety: Vec<_> = safety.filter(|(path, _)| !path.exists()).collect();
+    let safety = missing(&args.out);
     output::claim_all([&path].into_iter().chain(safety.iter().map(|(path, _)| path)))?;
     output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
     let options = options(args)?;
