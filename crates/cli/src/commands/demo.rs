@@ -57,8 +57,8 @@ pub(crate) struct Arguments {
     pub robot: VirtualRobotArguments,
 }
 
-/// Returns the files for `verify` and `stop` that a folder lacks. Existing ones may have been changed
-/// by a user.
+/// Returns the files for `verify` and `stop` that a folder lacks. A user may have changed existing
+/// ones.
 fn missing(folder: &Path) -> Vec<(PathBuf, &'static str)> {
     let files = SAFETY.map(|(name, text)| (folder.join(name), text));
     files.into_iter().filter(|(path, _)| !path.exists()).collect()
