@@ -71,8 +71,9 @@ fn try_texts(count: u64) {
         let scenario = Scenario::parse(text.into(), "scenario.toml", Path::new(""));
         drop(scenario.and_then(|scenario| scenario.scene(&arm)));
     });
-    let seeds = seeds::shields();
-    try_text("shield", seeds, &|text| drop(seeds::shield(&arm, text.into())));
+    let reached = seeds::reached();
+    let shield = |text: &str| drop(seeds::shield(&arm, &reached, text.into()));
+    try_text("shield", seeds::shields(), &shield);
 }
 
 /// Tries the readers of files, in a folder.
@@ -142,7 +143,9 @@ fn files_are_read_before_they_are_made_hostile() {
         let scenario = Scenario::parse(text(scenario), "scenario", Path::new("")).unwrap();
         scenario.scene(&arm).unwrap();
     }
-    seeds::shield(&arm, text(seeds::shields().remove(0))).unwrap();
+    for shield in seeds::shields() {
+        seeds::shield(&arm, &seeds::reached(), text(shield)).unwrap();
+    }
 }
 
 #[test]

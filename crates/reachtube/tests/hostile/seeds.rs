@@ -1,8 +1,11 @@
 //! Texts of the shape of real files, from which hostile ones are made.
 
 use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube::conform::SuiteReach;
 use reachtube::export::ExportError;
 use reachtube::export::shield::{Shield, ShieldFile};
+use reachtube::reach::StepBounds;
+use reachtube::scalar::Interval;
 use reachtube::verify::Capsules;
 use reachtube::{
     Keep, MemoryRuns, Model, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform,
@@ -165,8 +168,32 @@ pub(crate) fn shields() -> Vec<Vec<u8>> {
     vec![own.files[0].text.clone().into_bytes(), trajectory.into()]
 }
 
-/// Reads a robot's file of the shield.
-pub(crate) fn shield(arm: &Robot, text: String) -> Result<Shield, ExportError> {
-    let update = ShieldFile { name: "robot_parameters.yaml".into(), text };
-    Shield::new(arm, None, &[], &[update])
+/// Reads a file of the shield: the robot's, or the one of trajectories, whose limits are compared
+/// with `reached`.
+pub(crate) fn shield(
+    arm: &Robot,
+    reached: &SuiteReach,
+    text: String,
+) -> Result<Shield, ExportError> {
+    let capsules = Capsules::from_toml(CAPSULES, "capsules", arm).unwrap();
+    let update = ShieldFile { name: "parameters.yaml".into(), text };
+    Shield::new(arm, Some(&capsules), std::slice::from_ref(reached), &[update])
+}
+
+/// Returns the set of a short motion of both hinges.
+pub(crate) fn reached() -> SuiteReach {
+    let nominal = vec![0.3, 0.3, 0.5, 0.5, 0.31, 0.31, 0.7, 0.7];
+    let shifted = |by: f64| nominal.iter().map(|x| x + by).collect();
+    let step = [[Interval::centred(0.3, 0.1); 2], [Interval::centred(0.6, 0.3); 2]].concat();
+    SuiteReach {
+        suite: "A".into(),
+        run: None,
+        times: vec![0.0, 0.02],
+        lower: shifted(-0.01),
+        upper: shifted(0.01),
+        nominal,
+        tube: StepBounds::from_boxes(4, step),
+        dimension: 4,
+        lost: None,
+    }
 }
