@@ -60,7 +60,10 @@ pub(crate) fn stop(
             files.push((reachtube::page::STOP_PAGE_FILE.to_string(), html));
         }
         let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
-        Ok(kept(json!(study), &list(&study.findings), &study.text(&unit), &files))
+        let mut findings = study.findings.clone();
+        findings.extend(model.beyond_proof(&problem));
+        findings.extend(model.friction_beyond_proof());
+        Ok(kept(json!(study), &list(&findings), &study.text(&unit), &files))
     })
 }
 

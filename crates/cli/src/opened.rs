@@ -67,6 +67,12 @@ impl OpenedCheck {
         print_notes(&self.model, &self.problem, args.until);
     }
 
+    /// Prints a warning for each reason why the sets say less of the robot than of the model.
+    pub(crate) fn warn_beyond_proof(&self) {
+        let warnings = self.model.beyond_proof(&self.problem);
+        warnings.iter().for_each(|warning| output::warn(&warning.text));
+    }
+
     /// Returns each suite, or run with a nominal motion of its own, as exports take it.
     pub(crate) fn export_cases(&self) -> Result<Vec<ExportCase>> {
         let _bar = Progress::new();

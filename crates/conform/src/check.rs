@@ -159,12 +159,9 @@ impl Check {
         let set = verdict.enclosure.set_name();
         let mut findings = vec![Finding::verdict_of_check(verdict, &self.provenance.settings)];
         findings.extend(Finding::vacuous(model));
-        if let Some(points) = &verdict.points {
-            let are_lost = !verdict.lost.is_empty();
-            findings.push(Finding::points(points, verdict.enclosure, are_lost));
-            let worst = points.worst.as_ref();
-            findings.extend(worst.map(|worst| Finding::furthest_point(worst, &kinds)));
-        }
+        findings.extend(Finding::points(verdict, model.settings.states));
+        let furthest = verdict.points.as_ref().and_then(|points| points.worst.as_ref());
+        findings.extend(furthest.map(|worst| Finding::furthest_point(worst, &kinds)));
         if let Some(traces) = &verdict.traces {
             findings.push(Finding::traces(traces, verdict.runs, model.settings.disturbance));
         }
@@ -197,15 +194,17 @@ fn may_start_near(model: &Model, suite: &Suite) -> bool {
         let reach = (high - low) + sets.noise_radius(i);
         [low - reach, high + reach]
     };
+    let asked = || 0..model.settings.states.rows(suite.nominal_start.len());
     let is_near = |run: &RunSummary| {
-        (0..run.start.len()).all(|i| {
+        asked().all(|i| {
             let ([low, high], offset) = (near(i), run.start[i] - suite.nominal_start[i]);
             (low..=high).contains(&offset)
         })
     };
     // A large suite keeps only the bounds of all starts.
     let may_be_near = || {
-        suite.totals.start_bounds.iter().enumerate().all(|(i, [first, last])| {
+        let bounds = suite.totals.start_bounds.iter().zip(asked());
+        bounds.into_iter().all(|([first, last], i)| {
             let ([low, high], nominal) = (near(i), suite.nominal_start[i]);
             last - nominal >= low && first - nominal <= high
         })

@@ -104,7 +104,7 @@ fn verdict(verdict: &Verdict) -> Markup {
     }
 }
 
-fn warning_list(warnings: &[String]) -> Markup {
+pub(crate) fn warning_list(warnings: &[String]) -> Markup {
     html! { ul.warnings { @for warning in warnings { li { (Explained(warning)) } } } }
 }
 

@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use maud::{Markup, PreEscaped, html};
+use reachtube_conform::Finding;
 use reachtube_scalar::number::counted;
 use reachtube_verify::{
     Answer, Body, Obstacle, Scene, Solid, SweptCapsule, Verification, picture, summary, worst_first,
@@ -10,6 +11,7 @@ use reachtube_verify::{
 use serde::Serialize;
 
 use crate::error::Error;
+use crate::html::warning_list;
 use crate::interactive::in_script;
 use crate::library::compressed_library;
 use crate::skeleton::{document, laid_out, section, verdict};
@@ -32,6 +34,8 @@ pub struct VerifyPage<'a> {
     pub body: &'a Body,
     /// What they must stay clear of.
     pub scene: &'a Scene,
+    /// Why the verdicts say less of the robot than of the model.
+    pub warnings: &'a [Finding],
 }
 
 /// The worst motion, for the script.
@@ -75,12 +79,14 @@ struct ObstacleData<'a> {
 ///
 /// Fails where `out` fails.
 pub fn write_verify_html(page: &VerifyPage, out: &mut impl Write) -> Result<(), Error> {
-    let VerifyPage { all, body, scene } = *page;
+    let VerifyPage { all, body, scene, warnings } = *page;
     let (sentence, tables) = summary(all, body, scene);
+    let texts: Vec<String> = warnings.iter().map(|warning| warning.text.clone()).collect();
     let order = worst_first(all);
     let worst = order.first().copied();
     let content = html! {
         (verdict(class(worst.map(|worst| worst.answer)), &sentence))
+        @if !warnings.is_empty() { (section("Warnings", &warning_list(&texts))) }
         @if let Some(worst) = worst {
             (section("The worst motion", &shown(worst, page)))
         }

@@ -5,8 +5,8 @@ use reachtube_files::distinct_names;
 use reachtube_recordings::RunSource;
 use reachtube_robot::Robot;
 use reachtube_verify::{
-    Answer, Body, Capsules, Margin, Scenario, Scene, Verification, Witness, findings, picture,
-    report, verify,
+    Answer, Body, Capsules, Margin, Scenario, Scene, Verification, Witness, findings,
+    links_without_capsule, picture, report, verify,
 };
 use serde_json::{Value, json};
 
@@ -111,13 +111,27 @@ impl Verified {
     /// Returns the worst answer.
     #[must_use]
     pub fn answer(&self) -> Answer {
-        self.motions.iter().map(|one| one.answer).max().unwrap_or(Answer::Safe)
+        self.motions.iter().map(|one| one.answer).max().unwrap_or(Answer::Undecided)
     }
 
-    /// Returns the findings, the verdict first.
+    /// Returns the findings: the verdict, [`warnings`](Self::warnings), and what would decide.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
-        findings(&self.motions, &self.scene)
+        let mut all = findings(&self.motions, &self.body, &self.scene);
+        all.splice(all.len().min(1)..all.len().min(1), self.warnings());
+        all
+    }
+
+    /// Returns why the verdicts say less of the robot than of the model: sets that are used for
+    /// more than they were proved for, and links without a capsule.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<Finding> {
+        let mut warnings = self.opened.model.beyond_proof(&self.opened.problem);
+        if self.motions.iter().any(|one| one.stops.is_some()) {
+            warnings.extend(self.opened.model.friction_beyond_proof());
+        }
+        warnings.extend(links_without_capsule(&self.body, &self.scene));
+        warnings
     }
 
     /// Returns the answer as text.

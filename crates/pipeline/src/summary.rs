@@ -31,8 +31,11 @@ impl Built {
             }
         };
         let (windows, what) = (model.data.run_count(), self.unit());
-        let proof =
-            if self.answer.holds() { ", each sample proved with directed rounding" } else { "" };
+        let part = if self.is_cut() { String::new() } else { format!(" up to {horizon} s") };
+        let proof = match self.answer.holds() {
+            true => format!(", each sample{part} proved with directed rounding"),
+            false => String::new(),
+        };
         format!("{verdict}: {windows} {what}{proof}")
     }
 
@@ -132,9 +135,13 @@ impl Built {
 
     /// Returns what the recordings of the model are called.
     fn unit(&self) -> &'static str {
+        if self.is_cut() { "windows" } else { "recordings" }
+    }
+
+    /// Returns whether the recordings of the model are windows of logs.
+    fn is_cut(&self) -> bool {
         let preparation = self.answer.model.preparation.as_ref();
-        let is_cut = preparation.is_some_and(|known| known.window.is_some());
-        if is_cut { "windows" } else { "recordings" }
+        preparation.is_some_and(|known| known.window.is_some())
     }
 }
 

@@ -63,6 +63,43 @@ pub enum Error {
         /// The robot.
         robot: String,
     },
+    /// Links are described by the URDF of another robot.
+    #[error(
+        "{urdf}: {problem}, so its shapes are not those of the links of robot `{robot}`; name the \
+         URDF that the model was made from, or a TOML file with [[capsule]] tables"
+    )]
+    OtherRobot {
+        /// The file.
+        urdf: String,
+        /// The robot of the model.
+        robot: String,
+        /// What differs.
+        problem: String,
+    },
+    /// Nothing is compared with anything.
+    #[error(
+        "no obstacle concerns a link that has a capsule, so there is nothing to decide; name other \
+         `links` of the obstacles, or give these links capsules"
+    )]
+    NoPair,
+    /// The recordings of a suite have other sample times.
+    #[error(
+        "suite {suite}: its recordings have different sample times, and are one motion; give those \
+         of another sample time a suite of their own in runs.csv"
+    )]
+    OtherTimes {
+        /// The suite.
+        suite: String,
+    },
+    /// A motion has no step.
+    #[error(
+        "{case} has a single sample, so nothing moves; give recordings of two or more samples, or \
+         a later `until`"
+    )]
+    SingleSample {
+        /// The suite, and the run.
+        case: String,
+    },
     /// Stops of category 1 are asked for, and no deceleration is given.
     #[error(
         "{origin}: stops of category 1 need the greatest deceleration of each joint; add the line \

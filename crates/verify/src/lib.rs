@@ -37,7 +37,7 @@ pub use stop::study::{StopQuestion, StopStudy, stop_study};
 pub use stop::text::{annex_table, recorded_table};
 pub use verdict::clearance::Clearance;
 pub use verdict::decide::Advice;
-pub use verdict::findings::{findings, worst_first};
+pub use verdict::findings::{findings, links_without_capsule, worst_first};
 pub use verdict::stops::{MotionStops, StopClearance, TriggerDistance};
 pub use verdict::verification::{Answer, Verification, verify};
 pub use verdict::witness::{StopOfWitness, Witness};

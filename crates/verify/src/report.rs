@@ -16,7 +16,7 @@ use crate::verdict::verification::{Answer, Verification};
 #[must_use]
 pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> String {
     let order = worst_first(all);
-    let findings = findings(all, scene);
+    let findings = findings(all, body, scene);
     let (verdict, advice) = findings.split_at(findings.len().min(1));
     let mut lines: Vec<String> = verdict.iter().map(|finding| finding.text.clone()).collect();
     lines.push(String::new());
@@ -54,7 +54,7 @@ fn links(v: &Verification) -> Table {
 #[must_use]
 pub fn summary(all: &[Verification], body: &Body, scene: &Scene) -> (String, Vec<Table>) {
     let order = worst_first(all);
-    let sentence = findings(all, scene).into_iter().next().map(|verdict| verdict.text);
+    let sentence = findings(all, body, scene).into_iter().next().map(|verdict| verdict.text);
     let stops = triggers(all).map(|(table, _)| table);
     let first = Table { title: "motions, the worst first".into(), ..motions(&order) };
     let tables = [first].into_iter().chain(stops).chain([margins(all, body)]);

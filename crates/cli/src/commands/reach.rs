@@ -54,6 +54,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let OpenedCheck { model, problem, .. } = &opened;
     opened.print_notes(&args.model.data);
     let (reach, check) = (opened.reach()?, opened.check()?);
+    if !check.holds() {
+        opened.warn_beyond_proof();
+    }
     let mut rests = stiction(problem, &model.sets(), &model.allowance, &reach);
     rests.retain(|rest| rest.steps > 0);
     let file = |reach, name: String| Written {

@@ -76,6 +76,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let category = Category::numbered(args.category, &brakes, &origin, &sets.input_set)?;
     let recorded = args.stops.as_ref().map(DataSet::open).transpose()?;
     opened.print_notes(&args.model.data);
+    opened.warn_beyond_proof();
+    let friction = opened.model.friction_beyond_proof();
+    friction.iter().for_each(|warning| output::warn(&warning.text));
     let question = StopQuestion {
         brakes: &brakes,
         category: &category,

@@ -55,6 +55,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     };
     let Opened { model, problem, .. } = &verified.opened;
     print_notes(model, problem, until);
+    verified.warnings().iter().for_each(|warning| output::warn(&warning.text));
     write_files(&args.out, &verified)?;
     let outcome = match verified.answer() {
         Answer::Safe => Outcome::Done,
@@ -75,7 +76,8 @@ fn write_files(out: &Path, verified: &Verified) -> Result<()> {
     let files = verified.files().into_iter().map(|(name, text)| (out.join(name), text));
     let files: Vec<(PathBuf, String)> = files.collect();
     let mut html = Vec::new();
-    write_verify_html(&VerifyPage { all: motions, body, scene }, &mut html)?;
+    let warnings = &verified.warnings();
+    write_verify_html(&VerifyPage { all: motions, body, scene, warnings }, &mut html)?;
     let page = out.join(VERIFY_PAGE_FILE);
     output::claim_all(files.iter().map(|(path, _)| path).chain([&page]))?;
     write::atomically(&page, |file| file.write_all(&html))?;

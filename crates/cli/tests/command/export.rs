@@ -157,6 +157,9 @@ fn the_shield_gets_a_proved_radius_and_its_own_file_is_changed_in_place() {
     assert!(text.contains("is proved") && text.contains("axis2"), "{text}");
     lab.run(&format!("{shield} --out other")).fails_with_last(&["two axes", "capsule"]);
     lab.run(&format!("{short} --update a --update b --update c")).fails_with(&["--update"]);
+    // Nothing moves in a single sample.
+    let still = format!("{shield} --until 0.005 --capsules capsules.toml --out still");
+    lab.run(&still).fails_with_last(&["has a single sample", "two or more"]);
     lab.run(&format!("{shield} --update none.yaml --out other")).fails_with(&["none.yaml"]);
     lab.run("export --model model.json --to sara-shield --out other").fails_with(&["--data"]);
 }

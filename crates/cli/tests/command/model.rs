@@ -301,3 +301,15 @@ fn a_vacuous_model_is_called_so_on_its_page_and_by_its_exit_code() {
     assert!(lab.read("page/report.html").contains("Conformant, but vacuous"));
     lab.check("").exits(3);
 }
+
+#[test]
+fn recordings_that_are_used_in_part_are_said_to_be() {
+    let lab = Lab::new();
+    let model = "model --robot arm.toml --data data --torque compensated --out made";
+    let run = lab.run(&format!("{model} --horizon 0.2"));
+    assert!(run.stdout.contains("each sample up to 0.2 s proved"), "{}", run.stdout);
+    assert_eq!(json(&lab.read("made/model.json"))["settings"]["until"], 0.2);
+    let check = lab.run("check --model made/model.json --data data --until 0.5");
+    let said = check.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("suites, up to 0.2 s"), "{said}");
+}

@@ -75,3 +75,17 @@ fn the_shares_of_the_cost_are_of_all_states_and_add_up() {
     let all: f64 = shares.chunks(3).map(|joint| joint[2]).sum();
     assert!((all - 100.0).abs() < 0.1 * shares.len() as f64, "{shares:?}");
 }
+
+#[test]
+fn a_claim_about_positions_says_so() {
+    let lab = Lab::new();
+    let run = lab.conform("--states positions --notion exact --out model.json").exits(0);
+    assert!(run.stdout.contains("rows of positions proved"), "{}", run.stdout);
+    assert!(run.stdout.contains("recorded points (all positions together)"), "{}", run.stdout);
+    let check = lab.run("check --model model.json --data data").exits(0);
+    assert!(check.stdout.contains("rows of positions outside"), "{}", check.stdout);
+    // Nothing was asked of the velocities at the start.
+    assert!(!check.stderr.contains("starts near the nominal"), "{}", check.stderr);
+    let run = lab.conform("--states positions --notion phase-plane").exits(0);
+    assert!(run.stdout.contains("recorded points (each position by itself)"), "{}", run.stdout);
+}

@@ -152,6 +152,7 @@ fn a_wrong_scenario_is_refused_with_its_line() {
         &obstacle(&format!("{FAR}\nlinks = [\"hand\"]")),
         &["no joint is named `hand`", "`axis1`, `axis2`"],
     );
+    fails("", &obstacle(&format!("{FAR}\nlinks = []")), &["cell.toml:5", "name links, or omit"]);
     fails("", &obstacle(&format!("{FAR}\nspeed = -1")), &["speed = -1"]);
     fails("", &format!("{it}{it}"), &["obstacle `it`: the name occurs twice"]);
     lab.write(
@@ -216,4 +217,89 @@ fn a_planned_motion_is_one_file() {
     let json = lab.run("verify cell.toml --out cell --force --json").exits(0).json();
     assert_eq!(json["motions"].as_array().unwrap().len(), 1);
     assert!(json["motions"][0]["case"].as_str().unwrap().contains("plan"), "{json}");
+}
+
+#[test]
+fn a_question_about_nothing_is_refused() {
+    let lab = lab();
+    let it = obstacle(IN_THE_WAY);
+    for until in ["0", "0.001"] {
+        let run = verify(&lab, &format!("until = {until}"), &it, "");
+        run.fails_with(&["A has a single sample", "a later `until`"]);
+    }
+    let capsule = CAPSULES.split_once("[[capsule]]\nlink = 2").unwrap().0;
+    lab.write("capsules.toml", capsule);
+    let run = verify(&lab, "", &obstacle(&format!("{IN_THE_WAY}\nlinks = [\"axis2\"]")), "");
+    run.fails_with(&["no obstacle concerns a link that has a capsule"]);
+    // The other link is clear, and nothing is proved of the one in the way.
+    let run = verify(&lab, "", &it, "").exits(0);
+    assert!(run.stderr.contains("warning: The links of axis2 have no capsule"), "{}", run.stderr);
+    assert!(lab.read("cell/verify.html").contains("The links of axis2 have no capsule"));
+    let json = verify(&lab, "", &it, "--json").exits(0).json();
+    fits("verify", &json);
+    assert_eq!(json["findings"][1]["code"], "links-left-out");
+}
+
+#[test]
+fn sets_that_are_used_beyond_their_proof_have_a_warning() {
+    let lab = lab();
+    let codes = |run: Run| -> Vec<String> {
+        let found = run.json()["findings"].as_array().unwrap().clone();
+        found.iter().map(|finding| finding["code"].as_str().unwrap().to_string()).collect()
+    };
+    let it = obstacle(FAR);
+    assert_eq!(codes(verify(&lab, "", &it, "--json").exits(0)), ["safe"]);
+    // Recordings that last longer than the model's own, which are used up to the model's end.
+    lab.conform("--until 0.3 --out model.json").exits(0);
+    assert_eq!(codes(verify(&lab, "", &it, "--json").exits(0)), ["safe"]);
+    let longer = "until = 0.5";
+    assert_eq!(codes(verify(&lab, longer, &it, "--json").exits(0)), ["safe", "beyond-proof"]);
+    let run = verify(&lab, longer, &it, "").exits(0);
+    assert!(run.stdout.contains("up to 0.500 s each link"), "{}", run.stdout);
+    assert!(run.stderr.contains("of up to 0.300 s, and these last 0.500 s"), "{}", run.stderr);
+    lab.write("brakes.toml", "torque = [[5, 8], [5, 8]]\ndelay = [0.0, 0.01]\n");
+    let of_other = "--model model.json --data data --until 0.5";
+    for command in ["stop --brakes brakes.toml", "export --to cora --out exported"] {
+        let run = lab.run(&format!("{command} {of_other}")).exits(0);
+        assert!(run.stderr.contains("these last 0.500 s"), "{command}: {}", run.stderr);
+    }
+    // Friction that changes.
+    let warming = "warming = { by = \"runs\", reference = 1.0, viscous = 0.1 }";
+    let warm = lab.read("arm.toml").replace("0.0, 0.0] }", &format!("0.0, 0.0], {warming} }}"));
+    lab.write("arm.toml", warm);
+    lab.conform("--out model.json");
+    let run = lab.run("stop --brakes brakes.toml --model model.json --data data");
+    assert!(run.stderr.contains("changes as the joints warm up"), "{}", run.stderr);
+    // Velocities of which nothing was asked.
+    lab.conform("--states positions --out model.json");
+    let run = verify(&lab, "", &it, "").exits(0);
+    assert!(run.stderr.contains("recorded positions only"), "{}", run.stderr);
+}
+
+#[test]
+fn shapes_of_another_robot_are_refused() {
+    let lab = lab();
+    let urdf = |elbow: &str, at: f64| {
+        let link = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>\
+                    </inertial><collision><geometry><sphere radius=\"0.05\"/></geometry></collision>";
+        let joint = |name: &str, parent: &str, child: &str, z: f64| {
+            format!(
+                "<link name=\"{child}\">{link}</link><joint name=\"{name}\" type=\"continuous\">\
+                 <parent link=\"{parent}\"/><child link=\"{child}\"/><axis xyz=\"0 0 1\"/>\
+                 <origin xyz=\"0 0 {z}\"/></joint>"
+            )
+        };
+        let joints = joint("axis1", "base", "a", 0.5) + &joint(elbow, "a", "b", at);
+        format!("<robot name=\"two axes\"><link name=\"base\"/>{joints}</robot>")
+    };
+    let scenario = |urdf: String| {
+        lab.write("arm.urdf", urdf);
+        let it = obstacle(FAR);
+        let head = "model = \"model.json\"\ndata = \"data\"\ncapsules = \"arm.urdf\"\n";
+        lab.write("cell.toml", format!("{head}{it}"));
+        lab.run("verify cell.toml --out cell --force")
+    };
+    scenario(urdf("axis2", 0.5)).exits(0);
+    scenario(urdf("elbow", 0.5)).fails_with(&["arm.urdf: its joints are `axis1`, `elbow`, not"]);
+    scenario(urdf("axis2", 0.9)).fails_with(&["arm.urdf: the link of `axis2` lies elsewhere"]);
 }

@@ -177,6 +177,10 @@ fn a_stop_of_category_1_follows_the_path() {
     assert_eq!((&stops["category"], &stops["proved"]), (&1.into(), &stops["samples"]));
     let [samples, skipped] = ["samples", "skipped"].map(|key| stops[key].as_u64().unwrap());
     assert!(samples > 20 && skipped > 0 && samples + skipped == 51, "{stops}");
+    // The claim ends where stops are left out.
+    let covered = stops["covered_until"].as_f64().unwrap();
+    assert!((0.2..0.5).contains(&covered), "{stops}");
+    assert!(run.stdout.contains(&format!("any sample up to {covered:.3} s")), "{}", run.stdout);
     // A slower deceleration takes longer, and fewer stops end before the motion does.
     lab.write("brakes.toml", BRAKES.replace("[4, 4]", "[2, 2]"));
     let slow = verify(&lab, "suites = [\"A\"]", &it, "--json").exits(0).json();

@@ -50,16 +50,6 @@ impl Notion {
         }
     }
 
-    /// Returns which states must lie in the reachable set together.
-    #[must_use]
-    pub fn states_together(self) -> &'static str {
-        match self {
-            Self::Hull => "each state by itself",
-            Self::PhasePlane => "position and velocity of each joint together",
-            Self::Exact | Self::Trace => "all states together",
-        }
-    }
-
     /// Returns what is claimed of the recorded `states`, such as "position", in a model's `set`.
     pub(crate) fn claim_words(self, states: &str, set: &str) -> String {
         match self {

@@ -62,6 +62,26 @@ impl States {
             Self::Positions => states / 2,
         }
     }
+
+    /// Returns what rows are of, to follow the word "rows"; empty if they are of all states.
+    pub(crate) fn of_words(self) -> &'static str {
+        match self {
+            Self::All => "",
+            Self::Positions => " of positions",
+        }
+    }
+
+    /// Returns which of them must lie in the reachable set together.
+    #[must_use]
+    pub fn together(self, notion: Notion) -> &'static str {
+        match (notion, self) {
+            (Notion::Hull, Self::All) => "each state by itself",
+            (Notion::Hull | Notion::PhasePlane, Self::Positions) => "each position by itself",
+            (Notion::PhasePlane, Self::All) => "position and velocity of each joint together",
+            (Notion::Exact | Notion::Trace, Self::All) => "all states together",
+            (Notion::Exact | Notion::Trace, Self::Positions) => "all positions together",
+        }
+    }
 }
 
 /// How far X0 may reach, to the accuracy of the solver and of the repair after it. Where each run

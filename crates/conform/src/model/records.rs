@@ -181,6 +181,13 @@ impl DataRecord {
         self.suites.iter().map(SuiteRecord::count).sum()
     }
 
+    /// Returns the duration of the longest run, s, where runs are listed.
+    #[must_use]
+    pub(crate) fn longest(&self) -> Option<f64> {
+        let runs = self.suites.iter().flat_map(|suite| &suite.runs);
+        runs.map(|run| run.duration).reduce(f64::max)
+    }
+
     /// Returns the number of distinct motions; a suite without a motion counts as one.
     #[must_use]
     pub(crate) fn motions(&self) -> usize {

@@ -27,12 +27,16 @@ impl Model {
 
     /// Returns the model with what was done to logs before its sets were found. That is no longer a
     /// remedy of any warning. A scenario bound becomes an indication where the cut-off or the
-    /// horizon was chosen from the logs.
+    /// horizon was chosen from the logs. Logs that were not cut into windows were used up to the
+    /// horizon of the sets, and later samples of other logs are not compared.
     #[must_use]
     pub fn with_preparation(mut self, preparation: Preparation) -> Self {
         let has_input = preparation.torque != Torque::Compensated;
         for warning in self.warnings.iter_mut().filter(|_| has_input) {
             warning.remedy.take_if(|remedy| remedy.setting == "torque");
+        }
+        if preparation.window.is_none() {
+            self.settings.until = self.usefulness.as_ref().map(|said| said.horizon);
         }
         let are_chosen = preparation.cut_off.is_some() || preparation.window.is_none();
         let trust = if are_chosen { self.trust.of_chosen_settings() } else { self.trust };

@@ -6,6 +6,7 @@ use reachtube_scalar::number::{counted, two_digits_up};
 use crate::check::Check;
 use crate::claim::verdict::{SuiteVerdict, Verdict};
 use crate::model::file::Model;
+use crate::model::provenance::Provenance;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::front_end::FrontEnd;
@@ -85,19 +86,16 @@ impl Check {
             count => format!(" ({:.1} %)", 100.0 * count as f64 / (*rows).max(1) as f64),
         };
         let mut lines = vec![format!(
-            "{words}: {}; {} of {rows} rows outside the {set}{percent}, in {outside} of {}{}",
+            "{words}: {}; {} of {rows} rows{} outside the {set}{percent}, in {outside} of {}{}",
             counted(*runs, "recording"),
             violations.count,
+            model.settings.states.of_words(),
             counted(suites.len(), "suite"),
             self.until_words(),
         )];
         lines.extend(Finding::vacuous_in_brief(model));
-        let points = self.verdict.points.as_ref();
-        lines.extend(
-            points.map(|points| {
-                Finding::points(points, self.verdict.enclosure, !lost.is_empty()).text
-            }),
-        );
+        let points = Finding::points(&self.verdict, model.settings.states);
+        lines.extend(points.map(|points| points.text));
         let traces = self.verdict.traces.as_ref();
         lines.extend(
             traces.map(|traces| Finding::traces(traces, *runs, model.settings.disturbance).text),
@@ -110,8 +108,9 @@ impl Check {
 impl Check {
     /// Returns up to which time the recordings were compared, if they were not to their end.
     fn until_words(&self) -> String {
-        let until = self.provenance.settings.until;
-        until.map_or_else(String::new, |until| format!(", up to {until} s"))
+        let Provenance { settings, data, .. } = &self.provenance;
+        let end = settings.until.map(|until| data.longest().unwrap_or(until));
+        end.map_or_else(String::new, |end| format!(", up to {end} s"))
     }
 }
 

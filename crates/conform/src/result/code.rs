@@ -130,6 +130,8 @@ codes! {
     FewMotions = "few-motions",
     /// Whether recordings were used in the fit cannot be known.
     UseUnknown = "use-unknown",
+    /// Sets are used for more than they were proved for.
+    BeyondProof = "beyond-proof",
     /// No recording of a suite starts near the model's nominal start.
     OtherStart = "other-start",
     /// Recordings that the model lists are missing or have other content.
@@ -154,6 +156,8 @@ codes! {
     TableIncomplete = "table-incomplete",
     /// A load turns a joint with more torque than its brake is sure to hold.
     BrakeWeak = "brake-weak",
+    /// Links have no capsule.
+    LinksLeftOut = "links-left-out",
     /// Every link stays clear of every obstacle on every motion of the model.
     Safe = "safe",
     /// On a simulated motion of the model a link comes too close to an obstacle.

@@ -61,9 +61,7 @@ fn verdict(model: &Model) -> Section {
     let proof = &model.proof;
     let mut findings = vec![Finding::verdict_of_fit(model)];
     findings.extend(Finding::vacuous(model));
-    if let Some(points) = &proof.points {
-        findings.push(Finding::points(points, proof.enclosure, !proof.lost.is_empty()));
-    }
+    findings.extend(Finding::points(proof, model.settings.states));
     if let Some(traces) = &proof.traces {
         let runs = model.data.run_count();
         findings.push(Finding::traces(traces, runs, model.settings.disturbance));

@@ -101,10 +101,11 @@ fn verdict(model: &Model, sets: &AtHorizon) -> String {
         Enclosure::Outer => "in the computed outer set",
     };
     format!(
-        "{words}: {}; {} of {} rows {how}, up to {:.3} s",
+        "{words}: {}; {} of {} rows{} {how}, up to {:.3} s",
         Finding::recordings_of_fit(model),
         proof.rows - proof.violations.count,
         proof.rows,
+        model.settings.states.of_words(),
         sets.horizon
     )
 }
@@ -113,10 +114,7 @@ fn verdict(model: &Model, sets: &AtHorizon) -> String {
 pub(super) fn against(model: &Model) -> Vec<String> {
     let proof = &model.proof;
     let mut lines: Vec<String> = Finding::vacuous_in_brief(model).into_iter().collect();
-    let points = proof.points.as_ref();
-    lines.extend(
-        points.map(|points| Finding::points(points, proof.enclosure, !proof.lost.is_empty()).text),
-    );
+    lines.extend(Finding::points(proof, model.settings.states).map(|points| points.text));
     let traces = proof.traces.as_ref();
     lines.extend(traces.map(|traces| {
         Finding::traces(traces, model.data.run_count(), model.settings.disturbance).text

@@ -1,6 +1,7 @@
 //! The tables as texts, in the paper's layout, with its numbers beside ours.
 
 use reachtube_abstraction::ModelKind;
+use reachtube_conform::settings::States;
 use reachtube_reach::Disturbance;
 
 use super::coverage::{Coverage, CoverageRow};
@@ -74,7 +75,7 @@ impl Table2Case {
             std::iter::once(format!("joint{}", joint + 1)).chain(cells).collect()
         };
         let header = ["joint", "X0 q [rad]", "paper", "X0 qd [rad/s]", "paper", "U [N m]", "paper"];
-        let notion = self.notion.states_together();
+        let notion = States::All.together(self.notion);
         let disturbance = match self.disturbance {
             Disturbance::Constant => "constant disturbance",
             Disturbance::Sample => "disturbance held over samples",

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use reachtube_robot::{Robot, Urdf, UrdfOptions};
+use reachtube_robot::{Lock, LockedJoint, Robot, Urdf, UrdfOptions};
 
 use crate::body::capsule::Capsule;
 use crate::body::fit::enclosing_capsule;
@@ -9,6 +9,9 @@ use crate::error::{Error, Result};
 
 /// Capsules of the embedded robots, by the robot's name.
 const EMBEDDED: [(&str, &str); 1] = [("Schunk LWA 4P", include_str!("../../robots/lwa4p.toml"))];
+
+/// Two placements of a link are the same up to this difference, m and entries of rotations.
+const SAME_PLACE: f64 = 1e-6;
 
 /// The capsules that contain the links of a robot, at least one.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,17 +29,29 @@ impl Capsules {
         Self::from_toml(text, name, robot)
     }
 
-    /// Reads the capsules of a TOML or URDF file; without one, takes the embedded ones.
+    /// Reads the capsules of a TOML or URDF file; without one, takes the embedded ones. Joints that
+    /// are locked in `robot` are locked in the URDF too.
     ///
     /// # Errors
     ///
     /// As [`embedded`](Self::embedded), [`from_toml`](Self::from_toml) and
-    /// [`of_urdf`](Self::of_urdf); a file that cannot be read.
+    /// [`of_urdf`](Self::of_urdf); [`Error::OtherRobot`]; a file that cannot be read.
     pub fn open(path: Option<&Path>, robot: &Robot) -> Result<Self> {
         let Some(path) = path else { return Self::embedded(robot) };
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf")) {
             let folder = path.parent().unwrap_or(Path::new(""));
-            return Self::of_urdf(&Urdf::load(path, &UrdfOptions::default())?, folder);
+            let locked = robot.description().locked.iter();
+            let lock =
+                |held: &LockedJoint| Lock { joint: held.name.clone(), position: held.position };
+            // Shapes need no inertia.
+            let options = UrdfOptions {
+                locks: locked.map(lock).collect(),
+                any_inertia: true,
+                ..Default::default()
+            };
+            let urdf = Urdf::load(path, &options)?;
+            check_same(robot, urdf.robot(), path)?;
+            return Self::of_urdf(&urdf, folder);
         }
         let text = reachtube_files::read_text(path, "name a TOML or URDF file with capsules")?;
         Self::from_toml(&text, &path.display().to_string(), robot)
@@ -91,4 +106,34 @@ impl Capsules {
     pub fn as_slice(&self) -> &[Capsule] {
         &self.0
     }
+}
+
+/// Checks that the robot of a URDF has the joints of `robot`, and their links where these have them.
+fn check_same(robot: &Robot, other: &Robot, path: &Path) -> Result<()> {
+    let names = |robot: &Robot| -> Vec<String> {
+        robot.joints().iter().map(|joint| format!("`{}`", joint.name)).collect()
+    };
+    let (own, others) = (names(robot), names(other));
+    let differs = |problem: String| {
+        let (urdf, robot) = (path.display().to_string(), robot.name().into());
+        Err(Error::OtherRobot { urdf, robot, problem })
+    };
+    if own != others {
+        return differs(format!("its joints are {}, not {}", others.join(", "), own.join(", ")));
+    }
+    for position in [0.0, 0.5] {
+        let q = vec![position; own.len()];
+        let places = robot.link_placements(&q).into_iter().zip(other.link_placements(&q));
+        let apart = places.map(|(own, other)| {
+            let turned = (own.rotation - other.rotation).amax();
+            turned.max((own.translation - other.translation).amax())
+        });
+        if let Some(joint) = apart.into_iter().position(|apart| apart > SAME_PLACE) {
+            return differs(format!(
+                "the link of {} lies elsewhere at the same positions",
+                own[joint]
+            ));
+        }
+    }
+    Ok(())
 }

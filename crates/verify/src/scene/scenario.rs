@@ -53,8 +53,6 @@ pub struct Scene {
     pub clearance: f64,
     /// Number of parts into which a step is divided, at most, where its enclosure comes too close.
     pub refine: u32,
-    /// The time up to which samples are used, s; all if `None`. A verdict says so.
-    pub until: Option<f64>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -225,7 +223,7 @@ impl Scenario {
             }
         }
         let clearance = clearance.as_ref().map_or(0.0, |clearance| *clearance.get_ref());
-        Ok(Scene { obstacles, clearance, refine: parts, until: self.until })
+        Ok(Scene { obstacles, clearance, refine: parts })
     }
 
     /// Returns the stops of the scenario, with their brakes; `None` if it has none. The torque of
@@ -286,6 +284,9 @@ impl Scenario {
                 invalid(&format!("no joint is named `{name}`"), &remedy)
             })
         };
+        if table.links.as_ref().is_some_and(Vec::is_empty) {
+            return Err(invalid("links = []", "name links, or omit the line for all links"));
+        }
         let joints = table.links.as_ref().map(|links| links.iter().map(joint).collect());
         Ok(Obstacle { name: table.name.clone(), solid, speed, joints: joints.transpose()? })
     }

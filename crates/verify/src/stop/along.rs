@@ -1,12 +1,13 @@
 //! Stops from every sample of recorded motions.
 
 use rayon::prelude::*;
-use reachtube_conform::data::Suite;
+use reachtube_conform::data::{RunSummary, Suite};
 use reachtube_conform::{Problem, SuiteReach};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use serde::Serialize;
 
+use crate::error::{Error, Result};
 use crate::stop::brakes::Brakes;
 use crate::stop::category::Category;
 use crate::stop::path::Path;
@@ -42,21 +43,25 @@ pub struct WorstStop {
 /// # Guarantee
 ///
 /// Outer, as [`Category::stop`]. Ways and times are infinite if a sample has no proved standstill.
-#[must_use]
+///
+/// # Errors
+///
+/// [`Error::OtherTimes`].
 pub(crate) fn stops_along(
     problem: &Problem,
     brakes: &Brakes,
     category: &Category,
     every: usize,
-) -> Vec<WorstStop> {
+) -> Result<Vec<WorstStop>> {
     let of_suite = |suite: &Suite| {
-        let motion = Motion::of(suite, 2 * problem.joints());
+        let motion = Motion::of(suite, 2 * problem.joints())?;
         let from_sample = |k: usize, stop: Option<Stop>| (motion.times[k], stop);
         let question = (brakes, category, every.max(1));
         let stops = motion.stops(problem.robot(), question, from_sample);
-        worst(problem.robot(), &suite.entry.name, &stops)
+        Ok(worst(problem.robot(), &suite.entry.name, &stops))
     };
-    problem.recordings().suites.iter().flat_map(of_suite).collect()
+    let all: Vec<_> = problem.recordings().suites.iter().map(of_suite).collect::<Result<_>>()?;
+    Ok(all.concat())
 }
 
 /// The stop from the sample at a time (s); `None` if its path ends too early.
@@ -71,15 +76,19 @@ pub(crate) struct Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    fn of(suite: &'a Suite, width: usize) -> Self {
-        let times = suite.runs.first().map_or(&[][..], |run| run.grid.times());
-        let times = &times[..times.len().min(suite.envelope.len())];
+    fn of(suite: &'a Suite, width: usize) -> Result<Self> {
+        let longest = suite.runs.iter().max_by_key(|run| run.samples);
+        let times = longest.map_or(&[][..], |run| &run.grid.times()[..run.samples]);
+        let is_part = |run: &RunSummary| run.grid.times()[..run.samples] == times[..run.samples];
+        if !suite.runs.iter().all(is_part) {
+            return Err(Error::OtherTimes { suite: suite.entry.name.clone() });
+        }
         let side = |at: usize| {
             let (k, i) = (at / width, at % width);
             let (low, high) = (suite.envelope.lower(k, i), suite.envelope.upper(k, i));
             Interval::point(low).hull(Interval::point(high))
         };
-        Self { times, states: (0..times.len() * width).map(side).collect(), width }
+        Ok(Self { times, states: (0..times.len() * width).map(side).collect(), width })
     }
 
     /// Takes the states of a reachable set.

@@ -1,6 +1,6 @@
 //! Recorded stops beside the enclosed ones.
 
-use reachtube_recordings::{GapLimit, ReadOptions, Run, RunSource};
+use reachtube_recordings::{GapLimit, ReadOptions, Run, RunSource, noise_deviations};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use serde::Serialize;
@@ -13,8 +13,11 @@ use crate::stop::path::Path;
 /// A joint stands while its speed is at most this part of its greatest one in the recording.
 const STANDS: f64 = 0.01;
 
-/// Number of joints of each recording in the table.
+/// Number of joints of each recording that are compared in way and time.
 const JOINTS: usize = 3;
+
+/// A reading is off by at most this many standard deviations of the sensor's noise.
+const SPREAD: f64 = 5.0;
 
 /// How long the path of a stop goes on, s.
 const PATH: f64 = 100.0;
@@ -41,7 +44,7 @@ pub struct RecordedStop {
 }
 
 /// Compares the recordings of stops with what is proved from their first states, for the three
-/// joints of each that move the most. Each recording begins when the stop begins; in a stop of
+/// joints of each that move the most, and any other whose way is not proved. Each recording begins when the stop begins; in a stop of
 /// category 1 the path is straight from there.
 ///
 /// # Errors
@@ -113,8 +116,53 @@ fn compared(
                 && earliest.is_some_and(|time| time <= proved_time),
         }
     };
-    let mut joints: Vec<RecordedStop> = (0..n).map(of_joint).collect();
-    joints.sort_by(|a, b| b.way.abs().total_cmp(&a.way.abs()));
-    joints.truncate(JOINTS);
-    joints
+    let noise = noise_deviations(run).unwrap_or_default();
+    let mut joints: Vec<(usize, RecordedStop)> = (0..n).map(of_joint).enumerate().collect();
+    joints.sort_by(|(_, a), (_, b)| b.way.abs().total_cmp(&a.way.abs()));
+    let rest = joints.split_off(JOINTS.min(n));
+    // Another joint hardly moves: noise gives it a way, and no time.
+    let sags = |(joint, stop): &(usize, RecordedStop)| {
+        let room = 2.0 * SPREAD * noise.get(*joint).copied().unwrap_or(0.0);
+        !(stop.proved_way[0] - room..=stop.proved_way[1] + room).contains(&stop.way)
+    };
+    let sagging = rest.into_iter().filter(sags);
+    joints.into_iter().chain(sagging).map(|(_, stop)| stop).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use reachtube_recordings::MemoryRuns;
+
+    use super::*;
+    use crate::stop::simulated::StopCase;
+
+    /// Three joints stop as they are proved to; another one, at rest, sags or shows noise.
+    #[test]
+    fn a_joint_that_sags_is_compared_beside_the_joints_that_move_most() {
+        let robot = Robot::lwa4p();
+        let brakes = Brakes::new(vec![[90.0, 100.0]; 6], [0.01, 0.02]);
+        let qd = vec![0.6, 0.5, 0.4, 0.0, 0.0, 0.0];
+        let brake = vec![95.0; 6];
+        let (error, drive) = (vec![0.0; 6], Vec::new());
+        let case = StopCase { q: vec![0.1; 6], qd, brake, delay: 0.015, error, drive };
+        let found = case.simulate(&robot, 20).unwrap();
+        let outside_of = |sag: f64| {
+            let count = found.states.len() / 12;
+            let row = |k: usize| {
+                let mut row = found.states[12 * k..12 * (k + 1)].to_vec();
+                row[4] +=
+                    sag * k as f64 / count as f64 + if k.is_multiple_of(2) { 1e-6 } else { -1e-6 };
+                row
+            };
+            let states = (0..count).flat_map(row).collect();
+            let times = found.times.clone();
+            let mut runs = MemoryRuns::default();
+            let run = Run::new(6, times, states, vec![0.0; 6 * count]).unwrap();
+            runs.push("stop", Some("stop"), None, run);
+            let all = recorded_stops(&robot, &brakes, &Category::Zero, &runs).unwrap();
+            outside(&all).map(|stop| stop.joint.clone())
+        };
+        assert_eq!(outside_of(0.0), None);
+        assert_eq!(outside_of(0.05).as_deref(), Some("joint5"));
+    }
 }

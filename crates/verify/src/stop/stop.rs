@@ -207,14 +207,17 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Follows the stop to its end.
+    /// Follows the stop to its end: a joint that stands before the brakes are sure to hold may move
+    /// again.
     fn follow(mut self) -> Stop {
-        while !self.all_stand() && self.time < self.off + LONGEST {
+        let held = self.brakes.delay[1];
+        let longest = self.off.max(held) + LONGEST;
+        while !(self.all_stand() && self.time >= held) && self.time < longest {
             if !self.advance() {
                 return self.finish(false);
             }
         }
-        let stands = self.all_stand() && self.holds_for_good();
+        let stands = self.all_stand() && self.time >= held && self.holds_for_good();
         self.finish(stands)
     }
 
@@ -361,10 +364,9 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Returns whether the brakes hold the arm where it stands once they all act.
+    /// Returns whether the brakes, which all act, hold the arm where it stands.
     fn holds_for_good(&mut self) -> bool {
         self.terms.over(&self.q, &vec![Interval::ZERO; self.q.len()]);
-        self.time = self.time.max(self.brakes.delay[1]);
         self.slipping(&[], &[]).is_none()
     }
 

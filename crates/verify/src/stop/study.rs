@@ -63,7 +63,7 @@ pub fn stop_study(
     let recorded = recorded.map(|source| recorded_stops(robot, brakes, category, source));
     let recorded = recorded.transpose()?.unwrap_or_default();
     let annex_b = table.then(|| annex_b(robot, brakes, &sets.input_set)).transpose()?;
-    let stops = stops_along(problem, brakes, category, every);
+    let stops = stops_along(problem, brakes, category, every)?;
     let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
     let findings = findings(&stops, annex_b.as_ref(), &recorded, &unit);
     Ok(StopStudy { category: category.number(), stops, annex_b, recorded, findings })

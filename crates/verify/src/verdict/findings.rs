@@ -3,6 +3,7 @@
 use reachtube_conform::Finding;
 use reachtube_conform::result::{Code, Severity};
 
+use crate::body::body::Body;
 use crate::scene::scenario::Scene;
 use crate::verdict::decide::Advice;
 use crate::verdict::stop_verdict::{lower, stop_verdict};
@@ -11,10 +12,30 @@ use crate::verdict::verification::{Answer, Verification};
 /// Returns the findings: the verdict about the worst motion, then what would decide about each
 /// motion that is undecided.
 #[must_use]
-pub fn findings(all: &[Verification], scene: &Scene) -> Vec<Finding> {
+pub fn findings(all: &[Verification], body: &Body, scene: &Scene) -> Vec<Finding> {
     let order = worst_first(all);
-    let verdict = order.first().map(|worst| verdict(worst, scene));
+    let links = match links_without_capsule(body, scene) {
+        Some(_) => "each link with a capsule",
+        None => "each link",
+    };
+    let verdict = order.first().map(|worst| verdict(worst, [&until_words(all), links], scene));
     verdict.into_iter().chain(order.iter().filter_map(|v| next(v))).collect()
+}
+
+/// Returns a warning that names the links that an obstacle concerns and that have no capsule:
+/// nothing is proved of them.
+#[must_use]
+pub fn links_without_capsule(body: &Body, scene: &Scene) -> Option<Finding> {
+    let has_none = |joint: &usize| body.capsules().iter().all(|capsule| capsule.joint != *joint);
+    let concerns = |joint: &usize| scene.obstacles.iter().any(|it| it.concerns(*joint));
+    let names = (0..body.joint_count()).filter(has_none).filter(concerns);
+    let names: Vec<&str> = names.map(|joint| body.joint_name(joint)).collect();
+    let text = format!(
+        "The links of {} have no capsule: nothing is proved of them, and an obstacle may touch them.",
+        names.join(", ")
+    );
+    let warning = Finding::new(Severity::Warning, Code::LinksLeftOut, text);
+    (!names.is_empty()).then_some(warning)
 }
 
 /// Returns the verdicts with the worst first: unsafe before undecided before safe, and then by the
@@ -33,52 +54,60 @@ fn proved(v: &Verification) -> f64 {
     motion.into_iter().chain(stop).fold(f64::INFINITY, f64::min)
 }
 
+/// Returns up to which time the motions last, to follow the word "model".
+fn until_words(all: &[Verification]) -> String {
+    let ends = all.iter().filter_map(|one| one.reach.times.last().copied());
+    let [first, last] = ends.fold([f64::INFINITY, 0.0], |[first, last], end| {
+        [f64::min(first, end), f64::max(last, end)]
+    });
+    match first < last {
+        true => format!(" up to {first:.3} to {last:.3} s"),
+        false => format!(" up to {last:.3} s"),
+    }
+}
+
 /// Returns the verdict about the worst motion.
-fn verdict(worst: &Verification, scene: &Scene) -> Finding {
+fn verdict(worst: &Verification, [until, links]: [&str; 2], scene: &Scene) -> Finding {
     let keep = match scene.clearance {
         0.0 => String::new(),
         clearance => format!(" more than {clearance} m"),
     };
     let case = &worst.case;
-    let until = scene.until.map_or_else(String::new, |until| format!(" up to {until} s"));
-    let stopped = stop_verdict(worst, &keep, &until);
-    let finding = match worst.answer {
-        Answer::Unsafe => {
-            Finding::new(Severity::Failure, Code::Unsafe, too_close(worst).unwrap_or_default())
+    let stopped = stop_verdict(worst, &keep, links);
+    let (severity, code, text) = match (worst.answer, worst.clearances.first()) {
+        (Answer::Unsafe, _) => {
+            (Severity::Failure, Code::Unsafe, too_close(worst).unwrap_or_default())
         }
-        Answer::Safe => {
-            let text = match worst.clearances.first() {
-                Some(pair) => format!(
-                    "safe: on every motion of the model{until} each link stays{keep} clear; the \
-                     smallest proved distance is {} m, of the link of {} from `{}` at {:.3} s \
-                     ({case}).",
-                    lower(pair.distance),
-                    pair.link,
-                    pair.obstacle,
-                    pair.time
-                ),
-                None => "safe: no obstacle concerns a link.".into(),
-            };
-            Finding::new(Severity::Info, Code::Safe, text)
+        (Answer::Safe, Some(pair)) => {
+            let text = format!(
+                "safe: on every motion of the model{until} {links} stays{keep} clear; the \
+                 smallest proved distance is {} m, of the link of {} from `{}` at {:.3} s ({case}).",
+                lower(pair.distance),
+                pair.link,
+                pair.obstacle,
+                pair.time
+            );
+            (Severity::Info, Code::Safe, text)
         }
-        Answer::Undecided => {
+        (_, Some(pair)) => {
             let found = worst.closest.as_ref();
-            let text = match worst.clearances.first() {
-                Some(pair) => format!(
-                    "undecided: no distance{keep} is proved between the link of {} and `{}` at \
-                     {:.3} s ({case}); the closest motion found stays {} m away.",
-                    pair.link,
-                    pair.obstacle,
-                    pair.time,
-                    found.map_or("?".into(), |found| format!("{:.4}", found.distance)),
-                ),
-                None => format!("undecided: the reachable set ends before the motion ({case})."),
-            };
-            Finding::new(Severity::Warning, Code::Undecided, text)
+            let text = format!(
+                "undecided: no distance{keep} is proved between the link of {} and `{}` at {:.3} s \
+                 ({case}); the closest motion found stays {} m away.",
+                pair.link,
+                pair.obstacle,
+                pair.time,
+                found.map_or("?".into(), |found| format!("{:.4}", found.distance)),
+            );
+            (Severity::Warning, Code::Undecided, text)
+        }
+        (_, None) => {
+            let text = format!("undecided: the reachable set ends before the motion ({case}).");
+            (Severity::Warning, Code::Undecided, text)
         }
     };
     let simulated = worst.closest.as_ref().map_or(f64::INFINITY, |found| found.distance);
-    let finding = Finding { text: stopped.unwrap_or(finding.text.clone()), ..finding };
+    let finding = Finding::new(severity, code, stopped.unwrap_or(text));
     finding.at(case).with("proved_distance", proved(worst)).with("simulated_distance", simulated)
 }
 

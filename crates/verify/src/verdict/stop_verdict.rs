@@ -6,31 +6,31 @@ use crate::verdict::verification::{Answer, Verification};
 
 /// Returns the verdict about a motion as a sentence if its stops decide: always if a stop is
 /// triggered at a distance, and else if they come closer than the motion without a stop. `keep`
-/// names the distance to keep, and `until` the time up to which samples are used.
-pub(crate) fn stop_verdict(worst: &Verification, keep: &str, until: &str) -> Option<String> {
+/// names the distance to keep, and `links` the links.
+pub(crate) fn stop_verdict(worst: &Verification, keep: &str, links: &str) -> Option<String> {
     let stops = worst.stops.as_ref()?;
     let closest = stops.clearances.first();
     let motion = worst.clearances.first();
     let decides = match (closest, motion) {
-        _ if stops.triggered_at.is_some() => true,
+        _ if stops.covered_until.is_none() || stops.triggered_at.is_some() => true,
         (Some(stop), Some(motion)) => stop.distance <= motion.distance,
-        _ => stops.samples == 0,
+        _ => false,
     };
     if worst.answer == Answer::Unsafe || !decides && worst.answer != Answer::Safe {
         return None;
     }
     let case = &worst.case;
     let category = stops.category;
-    if stops.samples == 0 {
+    let (Some(until), Some(stop)) = (stops.covered_until, closest) else {
         return Some(format!(
-            "undecided: no stop of category {category} ends before the motion does ({case})."
+            "undecided: the stop of category {category} from the first sample ends after the motion \
+             does ({case})."
         ));
-    }
-    let when = match stops.triggered_at {
-        Some(distance) => format!("that is triggered at {distance} m{until}"),
-        None => format!("from any sample{until}"),
     };
-    let Some(stop) = closest else { return Some("safe: no obstacle concerns a link.".into()) };
+    let when = match stops.triggered_at {
+        Some(distance) => format!("that is triggered at {distance} m up to {until:.3} s"),
+        None => format!("from any sample up to {until:.3} s"),
+    };
     let (link, obstacle, from) = (&stop.link, &stop.obstacle, stop.from);
     if worst.answer != Answer::Safe {
         let why = if stop.distance == f64::NEG_INFINITY {
@@ -59,7 +59,7 @@ pub(crate) fn stop_verdict(worst: &Verification, keep: &str, until: &str) -> Opt
         ),
     };
     Some(format!(
-        "safe: up to a stop of category {category} {when} and until standstill, each link \
+        "safe: up to a stop of category {category} {when} and until standstill, {links} \
          stays{keep} clear; the smallest proved distance is {closest} ({case})."
     ))
 }

@@ -31,6 +31,9 @@ pub struct MotionStops {
     /// Number of samples whose deceleration would lead beyond the end of the motion: stops from
     /// these are not covered.
     pub skipped: usize,
+    /// The time up to which a stop was followed from every sample, s; `None` if it was not from the
+    /// first.
+    pub covered_until: Option<f64>,
     /// The smallest proved distance of each link from each obstacle during the stops, smallest
     /// first.
     pub clearances: Vec<StopClearance>,
@@ -106,6 +109,7 @@ impl MotionStops {
             Some(FromSample::new(&search, (body, scene), *distance, (reach, k, &stop?)))
         };
         let all = motion.stops(robot, (brakes, category, 1), of_sample);
+        let covered = all.iter().take_while(|one| one.is_some()).count();
         let followed: Vec<(usize, &FromSample)> =
             all.iter().enumerate().filter_map(|(k, one)| Some((k, one.as_ref()?))).collect();
         let smallest = (0..search.pairs.len()).map(|pair| {
@@ -127,6 +131,7 @@ impl MotionStops {
             samples: followed.len(),
             proved: followed.iter().filter(|(_, one)| one.time.is_finite()).count(),
             skipped: all.len() - followed.len(),
+            covered_until: covered.checked_sub(1).map(|last| reach.times[last]),
             clearances: clearances.collect(),
             trigger: trigger(body, &followed, &reach.times),
             worst,
@@ -135,9 +140,11 @@ impl MotionStops {
         }
     }
 
-    /// Returns whether each link keeps the clearance until standstill.
+    /// Returns whether each link keeps the clearance until standstill, after a stop from each sample
+    /// that is covered.
     pub(super) fn is_clear(&self, scene: &Scene) -> bool {
-        self.samples > 0 && self.clearances.iter().all(|pair| pair.distance > scene.clearance)
+        let clears = |pair: &StopClearance| pair.distance > scene.clearance;
+        self.covered_until.is_some() && self.clearances.iter().all(clears)
     }
 }
 
@@ -174,18 +181,19 @@ impl FromSample {
             return Self { distances, ways: vec![f64::INFINITY; ways.len()], time: f64::INFINITY };
         }
         let mut distances = vec![f64::INFINITY; search.pairs.len()];
-        let steps = Steps { search, scene, stop, start: reach.times[k], joints: start.len() };
+        let from = reach.times[k].next_up();
+        let steps = Steps { search, scene, stop, start: from, joints: start.len() };
         steps.lower(&mut memory, [0, stop.tube.len()], &mut distances);
         let before = k.saturating_sub(1);
         if let (Some(_), true) = (distance, k > 0) {
             // The way from the sample at which no stop was triggered.
             memory.positions.clear();
             memory.positions.extend_from_slice(&reach.tube.bounds(before)[..start.len()]);
-            let here = search.distances(&mut memory, reach.times[k].next_up());
+            let here = search.distances(&mut memory, from);
             distances.iter_mut().zip(here).for_each(|(found, here)| *found = found.min(here));
         }
         let standstill = stop.times.last().copied().unwrap_or(0.0);
-        let time = add_up(sub_up(reach.times[k], reach.times[before]), standstill);
+        let time = add_up(sub_up(from, reach.times[before].next_down()), standstill);
         if let (Some(distance), true) = (distance, k > 0) {
             for (found, (capsule, obstacle)) in distances.iter_mut().zip(&search.pairs) {
                 let speed = scene.obstacles[*obstacle].speed;
@@ -250,8 +258,7 @@ fn shift_until_standstill(
         Interval::point(reach.lower[at]).hull(Interval::point(reach.upper[at]))
     };
     let (mut now, mut all) = (vec![Interval::ZERO; n], vec![Interval::ZERO; n]);
-    let mut follow = |[from, to]: [f64; 2], sides: &[Interval]| {
-        let duration = Interval::point(to) - from;
+    let mut follow = |duration: Interval, sides: &[Interval]| {
         for i in 0..n {
             let velocity = sides[n + i];
             all[i] = all[i].hull(now[i] + Interval::ZERO.hull(duration) * velocity);
@@ -259,10 +266,16 @@ fn shift_until_standstill(
         }
     };
     if k > 0 {
-        follow([reach.times[before], reach.times[k]], reach.tube.bounds(before));
+        // The exact sample times are within a rounding of these.
+        let [from, to] = [before, k].map(|at| {
+            let time = reach.times[at];
+            Interval::point(time.next_down()).hull(Interval::point(time.next_up()))
+        });
+        follow(to - from, reach.tube.bounds(before));
     }
     for step in 0..stop.tube.len() {
-        follow([stop.times[step], stop.times[step + 1]], stop.tube.bounds(step));
+        let duration = Interval::point(stop.times[step + 1]) - stop.times[step];
+        follow(duration, stop.tube.bounds(step));
     }
     ((0..n).map(start).collect(), all)
 }

@@ -6,7 +6,7 @@ use reachtube_conform::{Problem, SuiteReach, Tube, reach};
 use serde::Serialize;
 
 use crate::body::body::Body;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::margin::Margin;
 use crate::scene::scenario::Scene;
 use crate::stop::rule::StopRule;
@@ -68,14 +68,23 @@ pub struct Verification {
 ///
 /// # Errors
 ///
-/// As [`reach()`](reach()).
+/// [`Error::NoPair`] and [`Error::SingleSample`], which leave nothing to decide; as
+/// [`reach()`](reach()).
 pub fn verify(
     problem: &Problem,
     tube: &Tube,
     (body, scene): (&Body, &Scene),
     stops: Option<&StopRule>,
 ) -> Result<Vec<Verification>> {
+    let mut capsules = body.capsules().iter();
+    if !capsules.any(|capsule| scene.obstacles.iter().any(|it| it.concerns(capsule.joint))) {
+        return Err(Error::NoPair);
+    }
     let reached = reach(problem, tube)?;
+    if let Some(still) = reached.iter().find(|reach| reach.times.len() < 2 && reach.lost.is_none())
+    {
+        return Err(Error::SingleSample { case: still.name() });
+    }
     let question = Question { problem, tube, body, scene };
     // A stop that is triggered at a distance ends each motion that would come close.
     let is_open = stops.is_none_or(|rule| rule.distance.is_none());

@@ -181,5 +181,6 @@ pub(super) fn open(args: &Arguments, tool: &str) -> Result<OpenedCheck> {
     };
     let opened = OpenedCheck::with(model, setup, &data, None, Keep::Needed)?;
     opened.print_notes(&data);
+    opened.warn_beyond_proof();
     Ok(opened)
 }

@@ -1,5 +1,6 @@
 //! The words of an answer: one constructor for each code.
 
+mod beyond_proof;
 mod check;
 mod dependence;
 mod fit;

@@ -7,7 +7,7 @@ use reachtube_scalar::number::{at_least, counted, four_decimals, plural};
 use crate::claim::verdict::Verdict;
 use crate::claim::witness::{PointVerdict, PointWitness};
 use crate::data::notion::Notion;
-use crate::data::settings::Settings;
+use crate::data::settings::{Settings, States};
 use crate::explain::trace::TraceVerdict;
 use crate::model::file::Model;
 use crate::result::code::Code;
@@ -56,10 +56,11 @@ impl Finding {
             }
         };
         let text = format!(
-            "{}: {}; {} of {rows} rows (suite, sample, state) {how}, at samples{}",
+            "{}: {}; {} of {rows} rows{} (suite, sample, state) {how}, at samples{}",
             Self::outcome_of_fit(model),
             Self::recordings_of_fit(model),
             rows - violations.count,
+            model.settings.states.of_words(),
             model.settings.until_words(),
         );
         let (severity, code) = outcome(model.verified);
@@ -105,10 +106,11 @@ impl Finding {
         let Verdict { runs, rows, violations, .. } = verdict;
         let (severity, code) = outcome(verdict.conformant);
         let text = format!(
-            "{}: {}; {} of {rows} rows (suite, sample, state) outside the {}, at samples{}",
+            "{}: {}; {} of {rows} rows{} (suite, sample, state) outside the {}, at samples{}",
             if verdict.conformant { "conformant" } else { "not conformant" },
             counted(*runs, "recording"),
             violations.count,
+            settings.states.of_words(),
             verdict.enclosure.set_name(),
             settings.until_words(),
         );
@@ -120,9 +122,9 @@ impl Finding {
     }
 
     /// How many recorded points were proved to lie in the reachable set.
-    pub(crate) fn points(verdict: &PointVerdict, enclosure: Enclosure, are_lost: bool) -> Self {
-        let PointVerdict { points, unproved, outside, notion, .. } = verdict;
-        let set = enclosure.set_name();
+    pub(crate) fn points(verdict: &Verdict, states: States) -> Option<Self> {
+        let PointVerdict { points, unproved, outside, notion, .. } = verdict.points.as_ref()?;
+        let (set, are_lost) = (verdict.enclosure.set_name(), !verdict.lost.is_empty());
         let rest = match (unproved - outside, outside) {
             (0, 0) => String::new(),
             (0, outside) => format!("; {outside} lie outside"),
@@ -140,12 +142,13 @@ impl Finding {
         let text = format!(
             "{} of {points} recorded points ({}) proved to lie in the {set}{rest}",
             points - unproved,
-            notion.states_together(),
+            states.together(*notion),
         );
-        Self::new(severity, Code::Points, text)
+        let finding = Self::new(severity, Code::Points, text)
             .with("points", *points as f64)
             .with("unproved", *unproved as f64)
-            .with("outside", *outside as f64)
+            .with("outside", *outside as f64);
+        Some(finding)
     }
 
     /// The point that lies furthest outside.

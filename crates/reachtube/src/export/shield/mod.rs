@@ -160,6 +160,9 @@ fn largest_margins(body: &Body, reached: &[SuiteReach]) -> Result<Vec<LinkMargin
         if let (Some(_), time) = (&reach.lost, reach.times.last().copied().unwrap_or(0.0)) {
             return Err(ExportError::EndsEarly { case: reach.name(), time });
         }
+        if reach.times.len() < 2 {
+            return Err(ExportError::NoTime { case: reach.name() });
+        }
         for Margin { joint, distance, time } in body.margins(reach) {
             let name = body.joint_name(joint).to_owned();
             let margin = LinkMargin { joint: name, case: reach.name(), distance, time };

@@ -1,0 +1,64 @@
+//! What sets are used for beyond what they were proved for.
+
+use crate::data::correction::JointCorrection;
+use crate::data::problem::Problem;
+use crate::data::settings::States;
+use crate::model::file::Model;
+use crate::result::code::Code;
+use crate::result::finding::{Finding, Severity};
+
+/// Recordings of another sample time may be longer than the model's own by this factor.
+const LONGER: f64 = 1.01;
+
+impl Model {
+    /// Returns a warning for each reason why reachable sets along the recordings of `problem` say
+    /// less of the robot than of the model: sets that were not proved to enclose the model's own
+    /// recordings, velocities that nothing was asked of, and recordings that last longer.
+    #[must_use]
+    pub fn beyond_proof(&self, problem: &Problem) -> Vec<Finding> {
+        let mut reasons = Vec::new();
+        if !self.verified {
+            reasons.push(
+                "The model's sets were not proved to enclose its own recordings: what follows \
+                 holds for the model, and not for the robot."
+                    .to_string(),
+            );
+        }
+        if self.settings.states == States::Positions {
+            reasons.push(
+                "The model's sets enclose recorded positions only: the robot's velocities may be \
+                 far outside."
+                    .into(),
+            );
+        }
+        let runs = problem.recordings().suites.iter().flat_map(|suite| &suite.runs);
+        let longest = runs.map(|run| run.duration).fold(0.0, f64::max);
+        if let Some(own) = self.data.longest().filter(|own| longest > LONGER * own) {
+            reasons.push(format!(
+                "The model was made from recordings of up to {own:.3} s, and these last \
+                 {longest:.3} s: nothing was shown of the robot that long."
+            ));
+        }
+        let warning = |text| Finding::new(Severity::Warning, Code::BeyondProof, text);
+        reasons.into_iter().map(warning).collect()
+    }
+
+    /// Returns a warning if the friction of joints is not the robot's own at all times, with which
+    /// stops are proved: it changes with their warmth, or a fit changed it along the nominal motions
+    /// alone.
+    #[must_use]
+    pub fn friction_beyond_proof(&self) -> Option<Finding> {
+        let warms = self.robot.joints.iter().any(|joint| joint.friction.warming.is_some());
+        let corrected = self
+            .correction
+            .as_ref()
+            .is_some_and(|own| own.joints.iter().any(|joint| *joint != JointCorrection::default()));
+        let why = match (warms, corrected) {
+            (true, _) => "it changes as the joints warm up",
+            (false, true) => "the fit's correction of it is not part of them",
+            (false, false) => return None,
+        };
+        let text = format!("Stops are proved with the friction in the robot's description: {why}.");
+        Some(Finding::new(Severity::Warning, Code::BeyondProof, text))
+    }
+}
