@@ -65,8 +65,8 @@ pub enum Error {
     },
     /// Links are described by the URDF of another robot.
     #[error(
-        "{urdf}: {problem}, so its shapes are not those of the links of robot `{robot}`; name the \
-         URDF that the model was made from, or a TOML file with [[capsule]] tables"
+        "{urdf}: {problem}, so its shapes do not fit the links of robot `{robot}`; name the URDF \
+         that the model was made from, or a TOML file with [[capsule]] tables"
     )]
     OtherRobot {
         /// The file.
@@ -84,8 +84,8 @@ pub enum Error {
     NoPair,
     /// The recordings of a suite have other sample times.
     #[error(
-        "suite {suite}: its recordings have different sample times, and are one motion; give those \
-         of another sample time a suite of their own in runs.csv"
+        "suite {suite}: its recordings have different sample times, and are one motion; give \
+         recordings of another sample time a suite of their own in runs.csv"
     )]
     OtherTimes {
         /// The suite.

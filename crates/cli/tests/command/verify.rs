@@ -281,7 +281,8 @@ fn shapes_of_another_robot_are_refused() {
     let lab = lab();
     let urdf = |elbow: &str, at: f64| {
         let link = "<inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\"/>\
-                    </inertial><collision><geometry><sphere radius=\"0.05\"/></geometry></collision>";
+                    </inertial><collision><geometry><sphere radius=\"0.05\"/></geometry>\
+                    </collision>";
         let joint = |name: &str, parent: &str, child: &str, z: f64| {
             format!(
                 "<link name=\"{child}\">{link}</link><joint name=\"{name}\" type=\"continuous\">\

@@ -44,8 +44,8 @@ pub struct RecordedStop {
 }
 
 /// Compares the recordings of stops with what is proved from their first states, for the three
-/// joints of each that move the most, and any other whose way is not proved. Each recording begins when the stop begins; in a stop of
-/// category 1 the path is straight from there.
+/// joints of each that move the most, and any other whose way is not proved. Each recording begins
+/// when the stop begins; in a stop of category 1 the path is straight from there.
 ///
 /// # Errors
 ///

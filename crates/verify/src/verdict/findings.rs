@@ -31,7 +31,8 @@ pub fn links_without_capsule(body: &Body, scene: &Scene) -> Option<Finding> {
     let names = (0..body.joint_count()).filter(has_none).filter(concerns);
     let names: Vec<&str> = names.map(|joint| body.joint_name(joint)).collect();
     let text = format!(
-        "The links of {} have no capsule: nothing is proved of them, and an obstacle may touch them.",
+        "The links of {} have no capsule: nothing is proved of them, and an obstacle may touch \
+         them.",
         names.join(", ")
     );
     let warning = Finding::new(Severity::Warning, Code::LinksLeftOut, text);
@@ -81,7 +82,8 @@ fn verdict(worst: &Verification, [until, links]: [&str; 2], scene: &Scene) -> Fi
         (Answer::Safe, Some(pair)) => {
             let text = format!(
                 "safe: on every motion of the model{until} {links} stays{keep} clear; the \
-                 smallest proved distance is {} m, of the link of {} from `{}` at {:.3} s ({case}).",
+                 smallest proved distance is {} m, of the link of {} from `{}` at {:.3} s \
+                 ({case}).",
                 lower(pair.distance),
                 pair.link,
                 pair.obstacle,

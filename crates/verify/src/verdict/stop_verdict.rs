@@ -23,8 +23,8 @@ pub(crate) fn stop_verdict(worst: &Verification, keep: &str, links: &str) -> Opt
     let category = stops.category;
     let (Some(until), Some(stop)) = (stops.covered_until, closest) else {
         return Some(format!(
-            "undecided: the stop of category {category} from the first sample ends after the motion \
-             does ({case})."
+            "undecided: the stop of category {category} from the first sample ends after the \
+             motion does ({case})."
         ));
     };
     let when = match stops.triggered_at {

@@ -140,8 +140,8 @@ impl MotionStops {
         }
     }
 
-    /// Returns whether each link keeps the clearance until standstill, after a stop from each sample
-    /// that is covered.
+    /// Returns whether each link keeps the clearance until standstill, after a stop from each
+    /// sample that is covered.
     pub(super) fn is_clear(&self, scene: &Scene) -> bool {
         let clears = |pair: &StopClearance| pair.distance > scene.clearance;
         self.covered_until.is_some() && self.clearances.iter().all(clears)
