@@ -44,8 +44,8 @@ impl Model {
     }
 
     /// Returns a warning if the friction of joints is not the robot's own at all times, with which
-    /// stops are proved: it changes with their warmth, or a fit changed it along the nominal motions
-    /// alone.
+    /// stops are proved: it changes with their warmth, or a fit changed it along the nominal
+    /// motions alone.
     #[must_use]
     pub fn friction_beyond_proof(&self) -> Option<Finding> {
         let warms = self.robot.joints.iter().any(|joint| joint.friction.warming.is_some());
