@@ -267,8 +267,8 @@ impl Monitor {
     }
 
     /// Returns the gauge of each state: the largest part of the set's radius, from its centre, that
-    /// the open windows and the last one before them used, 2n. A value above 1 is outside. In
-    /// floating point.
+    /// the open windows and the last one before them used after their first samples, 2n. A value
+    /// above 1 is outside. In floating point.
     #[must_use]
     pub fn used(&self) -> &[f64] {
         &self.judge.progress.used

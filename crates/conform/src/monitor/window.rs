@@ -41,7 +41,8 @@ pub(crate) struct Window {
     runs_away: bool,
     /// The input of the step, n.
     input: Vec<f64>,
-    /// The part of the set that was used at most, and the signed part at the newest sample, 2n.
+    /// The part of the set that was used at most after the first sample, and the signed part at
+    /// the newest sample, 2n.
     pub used: Vec<f64>,
     pub signed: Vec<f64>,
 }
@@ -107,7 +108,10 @@ impl Window {
             }
             let offset = value - x.mid() - 0.5 * (bounds.lower + bounds.upper);
             self.signed[i] = if offset == 0.0 { 0.0 } else { offset / radius };
-            self.used[i] = self.used[i].max(self.signed[i].abs());
+            // Every window begins with no deviation, wherever that lies in the set.
+            if sample > 0 {
+                self.used[i] = self.used[i].max(self.signed[i].abs());
+            }
             let [above, below] = excess;
             if above <= 0.0 && below <= 0.0 {
                 continue;

@@ -190,6 +190,30 @@ fn samples_between_the_even_times_are_interpolated() {
 }
 
 #[test]
+fn the_gauge_leaves_out_the_first_sample_of_a_window_which_is_compared_all_the_same() {
+    let robot = bent();
+    let model = model(&robot, Settings::new(Torque::Compensated, 2), None);
+    // Pushes samples at rest; the least deviation at the start is `least`, in its radii.
+    let rest = |least: f64| {
+        let (radius, mut model) = (1e-9, model.clone());
+        model.initial_set.radius.fill(radius);
+        model.initial_set.centre.fill((1.0 + least) * radius);
+        let model = Model::parse(&model.to_json(), Path::new("model")).unwrap().0;
+        let mut monitor = Monitor::new(&model, Schedule::with_horizon(0.1, STEP)).unwrap();
+        for k in 0..40 {
+            monitor.push(STEP * f64::from(k), &[0.1; 2], &[0.0; 2], &[0.0; 2]).unwrap();
+        }
+        let used = monitor.largest_used().iter().copied().fold(0.0, f64::max);
+        (used, monitor.totals())
+    };
+    // No deviation is at the edge of X0.
+    let (used, totals) = rest(0.0);
+    assert!(totals.windows > 5 && used < 0.9, "{used}");
+    let (used, totals) = rest(1.0);
+    assert!(totals.left > totals.windows && used < 0.9, "{used}");
+}
+
+#[test]
 fn a_sample_that_cannot_be_used_is_refused_and_changes_nothing() {
     let robot = bent();
     let model = model(&robot, Settings::new(Torque::Compensated, 2), None);
