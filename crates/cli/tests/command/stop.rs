@@ -1,6 +1,6 @@
 //! How far a robot moves after its brakes were applied.
 
-use crate::fixture::Lab;
+use crate::fixture::{Lab, robot_toml};
 use crate::output_schema::fits;
 
 const STOP: &str = "stop --model model.json --data data --brakes brakes.toml --every 10";
@@ -48,7 +48,27 @@ fn a_torque_error_above_the_brakes_leaves_the_stop_open() {
     let lab = lab("[[5, 5], [5, 5]]", "error = [6, 0]\n");
     let run = lab.run(STOP).exits(3);
     assert!(run.stdout.starts_with("not proved: from 12 of 12 samples"), "{}", run.stdout);
+    assert!(!run.stdout.contains("delay"), "it changes nothing: {}", run.stdout);
     fits("stop", &lab.run(&format!("{STOP} --json")).exits(3).json());
+}
+
+#[test]
+fn a_span_of_the_delay_that_leaves_stops_open_is_named() {
+    let lab = Lab::new();
+    // A heavy link couples the joints, whose brakes may hold or not.
+    let heavy = "armature = 0.5\nmass = 30.0\ncom = [0.3, 0.0, 0.0]";
+    lab.write("arm.toml", robot_toml().replace("armature = 0.5", heavy));
+    lab.conform("--out model.json").exits(0);
+    let stop = |delay: &str, code: i32| {
+        lab.write("brakes.toml", format!("torque = [[100, 100], [100, 100]]\ndelay = {delay}\n"));
+        lab.run(STOP).exits(code).stdout
+    };
+    let text = stop("[0.0, 0.05]", 3);
+    let expected = "not proved: from 12 of 12 samples no standstill is proved; with `delay = \
+                    [0.05, 0.05]` one is proved from 12 of them: give `delay` a shorter span than \
+                    0 to 0.05 s.\n";
+    assert!(text.starts_with(expected), "{text}");
+    assert!(stop("[0.05, 0.05]", 0).starts_with("stands: "));
 }
 
 #[test]

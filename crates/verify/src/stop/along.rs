@@ -64,6 +64,18 @@ pub(crate) fn stops_along(
     Ok(all.concat())
 }
 
+/// Returns from how many samples a stop was followed, and from how many a standstill is proved.
+pub(super) fn proved(stops: &[WorstStop]) -> [usize; 2] {
+    let sum = |count: fn(&WorstStop) -> usize| of_suites(stops).map(count).sum();
+    [sum(|worst| worst.samples), sum(|worst| worst.proved)]
+}
+
+/// Returns one of the worst stops of each suite, whose numbers of samples are the suite's.
+pub(super) fn of_suites(stops: &[WorstStop]) -> impl Iterator<Item = &WorstStop> {
+    let first = stops.first().map(|worst| &worst.joint);
+    stops.iter().filter(move |worst| Some(&worst.joint) == first)
+}
+
 /// The stop from the sample at a time (s); `None` if its path ends too early.
 type FromSample = (f64, Option<Stop>);
 

@@ -4,28 +4,28 @@ use reachtube_conform::Finding;
 use reachtube_conform::result::{Code, Severity};
 use reachtube_scalar::number::{at_least, significant};
 
-use crate::stop::along::WorstStop;
+use crate::stop::along::{WorstStop, of_suites, proved};
 use crate::stop::annex_b::AnnexB;
+use crate::stop::delay_span::DelaySpan;
 use crate::stop::recorded::{RecordedStop, outside};
 
 /// Returns the findings, the verdict first; ways are in `unit`.
 pub(super) fn findings(
-    stops: &[WorstStop],
+    (stops, span): (&[WorstStop], &DelaySpan),
     table: Option<&AnnexB>,
     recorded: &[RecordedStop],
     unit: &str,
 ) -> Vec<Finding> {
     let verdict = outside(recorded).map(|stop| beyond(stop, unit));
-    let verdict = verdict.unwrap_or_else(|| of_motions(stops));
+    let verdict = verdict.unwrap_or_else(|| of_motions(stops, span));
     let table = table.into_iter().flat_map(|table| table.notes.iter().cloned());
     [verdict].into_iter().chain(left_out(stops)).chain(table).collect()
 }
 
 /// Returns the verdict about the stops from recorded motions.
-fn of_motions(stops: &[WorstStop]) -> Finding {
-    let suites: Vec<&WorstStop> = of_suites(stops).collect();
-    let samples: usize = suites.iter().map(|worst| worst.samples).sum();
-    let open = samples - suites.iter().map(|worst| worst.proved).sum::<usize>();
+fn of_motions(stops: &[WorstStop], span: &DelaySpan) -> Finding {
+    let [samples, proved] = proved(stops);
+    let open = samples - proved;
     let numbers =
         |finding: Finding| finding.with("samples", samples as f64).with("not_proved", open as f64);
     if samples == 0 {
@@ -38,17 +38,14 @@ fn of_motions(stops: &[WorstStop]) -> Finding {
             format!("stands: from each of {samples} samples every joint comes to a standstill.");
         return numbers(Finding::new(Severity::Info, Code::Stands, text));
     }
-    let text = format!(
-        "not proved: from {open} of {samples} samples no standstill is proved; the brakes may be \
-         too weak for the load, or the recorded states too far apart."
-    );
+    let text = format!("not proved: from {open} of {samples} samples no standstill is proved");
+    let others = "the brakes may be too weak for the load, or the recorded states too far apart";
+    let text = match span.with_one_delay {
+        0 => format!("{text}; {others}."),
+        all if all == open => format!("{text}; {span}."),
+        _ => format!("{text}; {span}; else {others}."),
+    };
     numbers(Finding::new(Severity::Failure, Code::StandstillOpen, text))
-}
-
-/// Returns one of the worst stops of each suite, whose numbers of samples are the suite's.
-fn of_suites(stops: &[WorstStop]) -> impl Iterator<Item = &WorstStop> {
-    let first = stops.first().map(|worst| &worst.joint);
-    stops.iter().filter(move |worst| Some(&worst.joint) == first)
 }
 
 /// Returns how many samples were left out.
@@ -75,7 +72,7 @@ fn beyond(stop: &RecordedStop, unit: &str) -> Finding {
         Some(_) if stop.proved_time.is_infinite() => {
             let text = format!(
                 "not proved: {recording}: no standstill is proved from its first state; the \
-                 brakes may be too weak for the load."
+                 brakes may be too weak for the load, or the span of `delay` too long."
             );
             Finding::new(Severity::Failure, Code::StandstillOpen, text)
         }

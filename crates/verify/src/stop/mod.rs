@@ -6,6 +6,7 @@ pub(crate) mod annex_b;
 pub(crate) mod brakes;
 pub(crate) mod category;
 pub(crate) mod deceleration;
+mod delay_span;
 mod extension;
 mod findings;
 pub(crate) mod path;

@@ -10,6 +10,7 @@ use crate::stop::along::{WorstStop, stops_along};
 use crate::stop::annex_b::{AnnexB, annex_b};
 use crate::stop::brakes::Brakes;
 use crate::stop::category::Category;
+use crate::stop::delay_span::DelaySpan;
 use crate::stop::findings::findings;
 use crate::stop::recorded::{RecordedStop, outside, recorded_stops};
 
@@ -63,9 +64,11 @@ pub fn stop_study(
     let recorded = recorded.map(|source| recorded_stops(robot, brakes, category, source));
     let recorded = recorded.transpose()?.unwrap_or_default();
     let annex_b = table.then(|| annex_b(robot, brakes, &sets.input_set)).transpose()?;
-    let stops = stops_along(problem, brakes, category, every)?;
+    let along = |brakes: &Brakes| stops_along(problem, brakes, category, every);
+    let stops = along(brakes)?;
+    let span = DelaySpan::new(&stops, brakes, along)?;
     let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
-    let findings = findings(&stops, annex_b.as_ref(), &recorded, &unit);
+    let findings = findings((&stops, &span), annex_b.as_ref(), &recorded, &unit);
     Ok(StopStudy { category: category.number(), stops, annex_b, recorded, findings })
 }
 

@@ -29,7 +29,8 @@ pub enum Advice {
     /// Without any uncertainty no distance is proved either: the nominal motion itself comes too
     /// close.
     Nominal,
-    /// Without any uncertainty no standstill is proved either: the brakes are too weak.
+    /// Without any uncertainty no standstill is proved either: the brakes are too weak, or the
+    /// span of their delay is too long.
     Brakes,
     /// The reachable set ends before the motion does.
     SetLost,

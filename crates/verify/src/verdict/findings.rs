@@ -158,8 +158,8 @@ fn next(v: &Verification) -> Option<Finding> {
         Advice::Brakes => info(
             Code::BrakeWeak,
             format!(
-                "{case}: without any uncertainty no standstill is proved either; the brakes are \
-                 too weak for the load."
+                "{case}: without any uncertainty no standstill is proved either; the brakes may \
+                 be too weak for the load, or the span of `delay` too long."
             ),
         ),
         Advice::SetLost => info(
