@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use anstyle::{AnsiColor, Style};
-use reachtube::printable;
+use reachtube::{printable, write};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
@@ -92,6 +92,19 @@ pub(crate) fn claim(path: &Path) -> Result<()> {
 /// Claims all files of a result before the first of them is written.
 pub(crate) fn claim_all<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
     paths.into_iter().try_for_each(|path| claim(path))
+}
+
+/// Writes the files of a result, after none is in the way. A file that is there already to the byte
+/// stays.
+pub(crate) fn write_all<'a>(files: impl Iterator<Item = (&'a PathBuf, &'a [u8])>) -> Result<()> {
+    let is_new =
+        |(path, bytes): &(&PathBuf, &[u8])| std::fs::read(path).ok().as_deref() != Some(*bytes);
+    let new: Vec<_> = files.filter(is_new).collect();
+    claim_all(new.iter().map(|(path, _)| *path))?;
+    for (path, bytes) in new {
+        write::atomically(path, |out| out.write_all(bytes))?;
+    }
+    Ok(())
 }
 
 /// Reports a file that was written.

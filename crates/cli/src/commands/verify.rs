@@ -7,7 +7,6 @@ use reachtube::conform::Opened;
 use reachtube::page::{VERIFY_PAGE_FILE, VerifyPage, write_verify_html};
 use reachtube::pipeline::{ScenarioJob, Verified};
 use reachtube::verify::{Answer, Scenario};
-use reachtube::write;
 
 use crate::error::Result;
 use crate::opened::print_notes;
@@ -32,6 +31,9 @@ NAME_closest.csv. With a [stop] in the scenario, each link must stay clear until
 
 Exit codes: 0 safe, 1 unsafe, 2 error, 3 undecided.";
 
+/// How the names of closest motions end.
+const CLOSEST: &str = "_closest.csv";
+
 /// Decide whether the links stay clear of obstacles on every motion of a model
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
@@ -46,7 +48,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let scenario = Scenario::open(&args.scenario)?;
-    write::try_at(&args.out.join("A.svg"))?;
+    // The names of the other files are not known before the recordings are read.
+    output::claim(&args.out.join(VERIFY_PAGE_FILE))?;
     let until = scenario.until;
     let job = ScenarioJob::new(scenario)?;
     let verified = {
@@ -56,7 +59,6 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let Opened { model, problem, .. } = &verified.opened;
     print_notes(model, problem, until);
     verified.warnings().iter().for_each(|warning| output::warn(&warning.text));
-    write_files(&args.out, &verified)?;
     let outcome = match verified.answer() {
         Answer::Safe => Outcome::Done,
         Answer::Undecided => Outcome::Undecided,
@@ -67,22 +69,36 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     } else {
         output::print_verdict(&verified.report(), &outcome)?;
     }
+    // A file in the way must not cost the verdict.
+    write_files(&args.out, &verified)?;
     Ok(outcome)
 }
 
-/// Writes the pictures, and the closest motions of what is not safe.
+/// Writes the page, the pictures, and the closest motions of what is not safe.
 fn write_files(out: &Path, verified: &Verified) -> Result<()> {
     let Verified { motions, body, scene, .. } = verified;
-    let files = verified.files().into_iter().map(|(name, text)| (out.join(name), text));
-    let files: Vec<(PathBuf, String)> = files.collect();
     let mut html = Vec::new();
     let warnings = &verified.warnings();
     write_verify_html(&VerifyPage { all: motions, body, scene, warnings }, &mut html)?;
-    let page = out.join(VERIFY_PAGE_FILE);
-    output::claim_all(files.iter().map(|(path, _)| path).chain([&page]))?;
-    write::atomically(&page, |file| file.write_all(&html))?;
-    for (path, text) in &files {
-        write::atomically(path, |file| file.write_all(text.as_bytes()))?;
-    }
+    let page = (VERIFY_PAGE_FILE.into(), html);
+    let others = verified.files().into_iter().map(|(name, text)| (name, text.into_bytes()));
+    let files = [page].into_iter().chain(others).map(|(name, bytes)| (out.join(name), bytes));
+    let files: Vec<(PathBuf, Vec<u8>)> = files.collect();
+    output::write_all(files.iter().map(|(path, bytes)| (path, &**bytes)))?;
+    let written: Vec<&Path> = files.iter().map(|(path, _)| &**path).collect();
+    note_stale(out, &written);
     Ok(())
+}
+
+/// Names the closest motions that lie beside the page and do not belong to it.
+fn note_stale(out: &Path, written: &[&Path]) {
+    let entries = std::fs::read_dir(out).into_iter().flatten().flatten();
+    let is_closest = |path: &PathBuf| path.to_string_lossy().ends_with(CLOSEST);
+    let mut stale: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(is_closest).collect();
+    stale.retain(|path| !written.contains(&&**path));
+    stale.sort();
+    for path in stale {
+        let text = "is the closest motion of another run; remove it";
+        output::note(&format!("{} {text}", path.display()));
+    }
 }

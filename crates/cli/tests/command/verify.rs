@@ -168,13 +168,29 @@ fn a_wrong_scenario_is_refused_with_its_line() {
 }
 
 #[test]
-fn files_of_others_are_not_overwritten() {
+fn files_of_others_are_not_overwritten_and_cost_no_verdict() {
+    let lab = lab();
+    let first = verify(&lab, "", &obstacle(IN_THE_WAY), "").exits(1);
+    let again = || lab.run("verify cell.toml --out cell");
+    // The same motions are the same files.
+    assert_eq!(again().exits(1).stdout, first.stdout);
+    lab.write("cell/A_closest.csv", "mine\n");
+    let run = again();
+    assert_eq!(run.stdout, first.stdout);
+    run.fails_after_result(&["A_closest.csv", "--force"]);
+    assert_eq!(lab.read("cell/A_closest.csv"), "mine\n");
+    // A page of others is found before anything is computed.
+    lab.write("cell/verify.html", "mine\n");
+    again().fails_with(&["verify.html", "--force"]);
+}
+
+#[test]
+fn closest_motions_of_another_run_are_named() {
     let lab = lab();
     verify(&lab, "", &obstacle(IN_THE_WAY), "").exits(1);
-    lab.write("cell/A_closest.csv", "mine\n");
-    let run = lab.run("verify cell.toml --out cell");
-    run.fails_with_last(&["A_closest.csv", "--force"]);
-    assert_eq!(lab.read("cell/A_closest.csv"), "mine\n");
+    let safe = verify(&lab, "", &obstacle(FAR), "").exits(0);
+    safe.notes("cell/A_closest.csv is the closest motion of another run");
+    assert!(lab.path("cell/A_closest.csv").exists());
 }
 
 #[test]

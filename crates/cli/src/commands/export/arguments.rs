@@ -6,7 +6,6 @@ use clap::Args;
 use reachtube::Robot;
 use reachtube::conform::{Keep, Model};
 use reachtube::export::{ExportFile, InputForm, Tool};
-use reachtube::write;
 use serde::Deserialize;
 
 use crate::data_arguments::DataArguments;
@@ -140,21 +139,12 @@ pub(crate) enum Target {
     Tool(Tool),
 }
 
-/// Writes files to these paths, after none is in the way. One that is there already to the byte
-/// stays: the tables of one case are the same for every tool.
+/// Writes files to these paths. The tables of one case are the same for every tool, and stay.
 pub(super) fn write_all<'a>(
     paths: &[PathBuf],
     files: impl Iterator<Item = &'a ExportFile>,
 ) -> Result<()> {
-    let is_new = |(path, file): &(&PathBuf, &ExportFile)| {
-        std::fs::read(path).ok().as_deref() != Some(file.text.as_bytes())
-    };
-    let new: Vec<_> = paths.iter().zip(files).filter(is_new).collect();
-    output::claim_all(new.iter().map(|(path, _)| *path))?;
-    for (path, file) in new {
-        write::atomically(path, |out| out.write_all(file.text.as_bytes()))?;
-    }
-    Ok(())
+    output::write_all(paths.iter().zip(files.map(|file| file.text.as_bytes())))
 }
 
 /// Loads the robot that is named, or the robot of the model.
