@@ -23,6 +23,7 @@ pub(crate) fn entry(row: &Entry) -> RunEntry {
         simulated: false,
         noise: None,
         origin: None,
+        at_rest: false,
         order,
         line: index + 1,
     }

@@ -128,6 +128,7 @@ impl Check {
         let rates = is_held_out.then(|| Rates::new(recordings, &verdict));
         let mut noted: Vec<Finding> =
             recordings.notes.iter().map(|note| Finding::recordings(note)).collect();
+        noted.extend(Finding::at_rest(recordings));
         noted.extend(is_used.is_none().then(|| Finding::use_unknown(model.data.are_listed())));
         noted.extend(friction_warning(problem).as_ref().map(Finding::from));
         let starts_elsewhere =

@@ -150,6 +150,7 @@ fn entry(path: &Path, line: u64, content: &Content) -> RunEntry {
         simulated: false,
         noise: None,
         origin: None,
+        at_rest: false,
         order: line,
         line,
     }

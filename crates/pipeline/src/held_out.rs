@@ -97,7 +97,7 @@ impl Split {
     pub(crate) fn origins(&self) -> BTreeMap<String, Origin> {
         let origin = |Recording { log, motion }: &Recording| {
             let sha256 = log.run.sha256.clone();
-            (log.name.clone(), Origin { motion: motion.clone(), sha256 })
+            (log.name.clone(), Origin { motion: motion.clone(), sha256, at_rest: false })
         };
         self.kept.iter().chain(&self.held_out).map(origin).collect()
     }

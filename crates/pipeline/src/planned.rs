@@ -25,6 +25,7 @@ impl Planned {
             simulated: false,
             noise: None,
             origin: None,
+            at_rest: false,
             order: 1,
             line: 1,
         };

@@ -176,10 +176,14 @@ pub(crate) fn unknown_warmth<'a>(logs: &[&'a RawLog], by_temperature: bool) -> O
     logs.iter().find(|log| !is_known(log)).map(|log| &*log.file)
 }
 
-/// Returns the motion and the SHA-256 of each log, by its name.
+/// Returns the motion and the SHA-256 of each log, and whether the robot rests in it, by its name.
 pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, Origin> {
     let logs = raw.iter().zip(motions(&raw.iter().collect::<Vec<_>>()));
-    let origin = |log: &RawLog, motion| Origin { motion, sha256: log.run.sha256.clone() };
+    let origin = |log: &RawLog, motion| Origin {
+        motion,
+        sha256: log.run.sha256.clone(),
+        at_rest: Kind::of(&log.run) == Kind::Rest,
+    };
     logs.map(|(log, motion)| (log.name.clone(), origin(log, motion))).collect()
 }
 

@@ -33,6 +33,8 @@ pub(crate) struct Origin {
     pub motion: String,
     /// Its SHA-256.
     pub sha256: String,
+    /// Whether the robot rests in it.
+    pub at_rest: bool,
 }
 
 impl Prepared<'_> {
@@ -79,7 +81,9 @@ impl Prepared<'_> {
                 let entry = runs.push(name, Some(&window.suite), Some(&motion), run);
                 entry.order = window.log.order.unwrap_or(entry.order);
                 entry.simulated = self.simulated;
-                entry.origin = self.origins.get(&window.motion).map(|log| log.sha256.clone());
+                let origin = self.origins.get(&window.motion);
+                entry.origin = origin.map(|log| log.sha256.clone());
+                entry.at_rest = origin.is_some_and(|log| log.at_rest);
             }
         }
         Ok(runs)

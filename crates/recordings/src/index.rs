@@ -35,6 +35,8 @@ pub struct RunEntry {
     pub noise: Option<Vec<f64>>,
     /// SHA-256 of the log that the run was cut from, if it was cut from one.
     pub origin: Option<String>,
+    /// Whether the robot rests in the log that the run was cut from.
+    pub at_rest: bool,
     /// Place in the order in which the runs of the suite were recorded, from 1.
     pub order: u64,
     /// Line in `runs.csv`, or number of a run in memory, from 1.
@@ -80,6 +82,7 @@ impl IndexRow {
             simulated: self.simulated.unwrap_or(false),
             noise: self.noise,
             origin: None,
+            at_rest: false,
             order,
             line,
         }

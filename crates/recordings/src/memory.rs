@@ -50,6 +50,7 @@ impl MemoryRuns {
             simulated: false,
             noise: None,
             origin: None,
+            at_rest: false,
             order: latest + 1,
             line: self.entries.len() as u64 + 1,
         });

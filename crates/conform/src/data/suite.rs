@@ -42,6 +42,11 @@ impl Suite {
         self.totals.count
     }
 
+    /// Returns whether the robot rests in the logs that all runs were cut from.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.runs.iter().all(|run| run.at_rest)
+    }
+
     /// Returns what was read of each run.
     ///
     /// # Errors

@@ -39,6 +39,9 @@ pub struct RunSummary {
     /// SHA-256 of the log that it was cut from, if it was cut from one.
     #[serde(skip)]
     pub origin: Option<String>,
+    /// Whether the robot rests in that log.
+    #[serde(skip)]
+    pub at_rest: bool,
     /// The standard deviation of the noise in each state, 2n, as
     /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it, and at least what
     /// was measured before a filter.
@@ -61,6 +64,7 @@ impl RunSummary {
             condition: Condition::of(entry.order, run),
             sha256: run.sha256.clone(),
             origin: entry.origin.clone(),
+            at_rest: entry.at_rest,
             noise: noise(entry, run),
             notes: run_notes(entry, run),
         }

@@ -1,10 +1,11 @@
 use std::collections::BTreeSet;
 
 use crate::data::recordings::Recordings;
+use crate::data::suite::Suite;
 
 /// The motion of each suite: its own name where the source names none.
 pub(crate) struct Motions<'a> {
-    /// Suite and motion, in the order of the suites.
+    /// Suite and motion, in the order of the suites that count.
     of_suites: Vec<(&'a str, &'a str)>,
     /// Whether the source names a motion for every suite.
     are_named: bool,
@@ -12,7 +13,17 @@ pub(crate) struct Motions<'a> {
 
 impl<'a> Motions<'a> {
     pub(crate) fn new(recordings: &'a Recordings) -> Self {
-        let entries = || recordings.suites.iter().map(|suite| &suite.entry);
+        Self::some(recordings, |_| true)
+    }
+
+    /// Leaves out suites in which the robot rests: a bound for motions does not hold for poses.
+    pub(crate) fn moving(recordings: &'a Recordings) -> Self {
+        Self::some(recordings, |suite| !suite.is_at_rest())
+    }
+
+    fn some(recordings: &'a Recordings, takes: impl Fn(&Suite) -> bool) -> Self {
+        let suites = || recordings.suites.iter().filter(|suite| takes(suite));
+        let entries = || suites().map(|suite| &suite.entry);
         let motion = |entry: &'a reachtube_recordings::SuiteEntry| {
             (entry.name.as_str(), entry.motion.as_deref().unwrap_or(&entry.name))
         };
@@ -20,7 +31,7 @@ impl<'a> Motions<'a> {
         Self { of_suites: entries().map(motion).collect(), are_named }
     }
 
-    /// Returns the motion of suite `index`.
+    /// Returns the motion of the suite that counts at `index`.
     pub(crate) fn of_suite(&self, index: usize) -> &'a str {
         self.of_suites[index].1
     }

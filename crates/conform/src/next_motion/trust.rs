@@ -214,7 +214,10 @@ impl Trust {
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
     #[must_use]
     pub(crate) fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
-        let motions = Motions::new(recordings);
+        let motions = Motions::moving(recordings);
+        if motions.count() == 0 {
+            return Self::unknown(0, "the robot rests in all recordings".into());
+        }
         if motions.count() > 1 && recordings.are_of_one_log() {
             return Self::of_one_log("hold-out");
         }

@@ -95,6 +95,7 @@ fn entries_of(name: &str, fold: &SuiteFold) -> impl Iterator<Item = (usize, RunE
             simulated: false,
             noise: None,
             origin: None,
+            at_rest: false,
             order: *order,
             line: u64::from(*place) + 1,
         };

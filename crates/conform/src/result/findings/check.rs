@@ -3,6 +3,8 @@
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::{at_least, counted};
 
+use crate::data::recordings::Recordings;
+use crate::data::suite::Suite;
 use crate::model::other_data::{OtherData, Replaced};
 use crate::next_motion::growth::Growth;
 use crate::result::code::Code;
@@ -107,6 +109,17 @@ impl Finding {
     /// A note on the recordings.
     pub(crate) fn recordings(note: &str) -> Self {
         Self::new(Severity::Info, Code::Recordings, note)
+    }
+
+    /// Counts the recordings at rest, if there are some.
+    pub(crate) fn at_rest(recordings: &Recordings) -> Option<Self> {
+        let suites = recordings.suites.iter().filter(|suite| suite.is_at_rest());
+        let count: usize = suites.map(Suite::run_count).sum();
+        let text = format!(
+            "In {count} of {} the robot rests; a bound for new motions does not count them.",
+            counted(recordings.run_count(), "recording")
+        );
+        (count > 0).then(|| Self::recordings(&text))
     }
 }
 
