@@ -1,6 +1,8 @@
+use reachtube_robot::{Joint, Robot};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
+use crate::limits::is_within;
 
 /// The point about which the forward dynamics is expanded, one value per joint for each of q, q̇
 /// and u. The paper's point is 0.
@@ -59,6 +61,14 @@ impl ExpansionPoint {
         }
         point.u = values.get(2 * joints..).unwrap_or_default().to_vec();
         Ok(point)
+    }
+
+    /// Returns the index of the first joint whose position is beyond its limits; `None` if all are
+    /// within.
+    #[must_use]
+    pub fn beyond_limits(&self, robot: &Robot) -> Option<usize> {
+        let is_within = |(q, joint): (&f64, &Joint)| is_within([*q; 2], joint.position_limits);
+        self.q.iter().zip(robot.joints()).position(|side| !is_within(side))
     }
 
     /// Returns the inputs u_a, n, N m.

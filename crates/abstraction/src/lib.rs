@@ -44,6 +44,7 @@ mod field;
 mod file;
 mod formula;
 mod layout;
+mod limits;
 mod linear_model;
 mod linearisation;
 mod model_kind;

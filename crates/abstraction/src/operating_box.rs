@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::expansion_point::ExpansionPoint;
+use crate::limits::is_within;
 
 /// The positions, velocities and inputs over which a bound holds: one interval \[low, high\] per
 /// joint for each.
@@ -101,10 +102,4 @@ impl OperatingBox {
         }
         Ok(())
     }
-}
-
-/// Returns whether a side lies within limits, up to the rounding of its ends.
-fn is_within(side: [f64; 2], limits: [f64; 2]) -> bool {
-    let slack = 1e-9 * (limits[1] - limits[0]).abs();
-    side[0] >= limits[0] - slack && side[1] <= limits[1] + slack
 }

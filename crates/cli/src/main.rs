@@ -4,6 +4,7 @@ mod cli;
 mod commands;
 mod data_arguments;
 mod error;
+mod expansion;
 mod file_names;
 mod folded;
 mod global;

@@ -1,7 +1,7 @@
 //! The kinds of joint, and the units that belong to them.
 
 use crate::placement::{Placement, rotation_from_z, rotation_z, snapped_sin_cos};
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 use core::fmt;
 use nalgebra::Vector3;
 use reachtube_scalar::Elementary;
@@ -130,6 +130,12 @@ impl JointKind {
             }
             Self::Prismatic => Placement::translation(q * axis.x, q * axis.y, q * axis.z),
         }
+    }
+
+    /// Returns the lowest and the highest position \[rad\] of a joint without limits of its own;
+    /// nothing bounds a prismatic joint.
+    pub(crate) fn default_limits(self) -> Option<[f64; 2]> {
+        (self == Self::Revolute).then_some([-PI, PI])
     }
 
     /// Returns why a joint with these limits cannot be locked at a position.

@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
-use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube::abstraction::{ModelKind, OperatingBox, PolynomialModel};
 use reachtube::write;
 use reachtube_robot::JointKind;
 use serde_json::json;
 
 use crate::error::Result;
+use crate::expansion::expansion_point;
 use crate::lock_arguments::LockArguments;
 use crate::option_values::{MODELS, numbered_choice};
 use crate::outcome::Outcome;
@@ -74,7 +75,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     robot.check_physical()?;
-    let point = ExpansionPoint::from_values(&args.expansion, robot.joint_count())?;
+    let point = expansion_point(&args.expansion, &robot)?;
     if let Some(path) = &args.out {
         output::claim(path)?;
     }

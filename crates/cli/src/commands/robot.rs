@@ -2,11 +2,11 @@
 
 use clap::{Args, Subcommand};
 use nalgebra::DMatrix;
-use reachtube::abstraction::ExpansionPoint;
 use reachtube_robot::{Joint, JointDescription, JointKind, LockedJoint, Physicality, Robot};
 use serde_json::json;
 
 use crate::error::{Error, Result};
+use crate::expansion::expansion_point;
 use crate::lock_arguments::LockArguments;
 use crate::outcome::Outcome;
 use crate::output;
@@ -54,8 +54,9 @@ pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
         let unit = JointKind::units(&robot.kinds(), JointKind::position_unit);
         return Err(Error::PositionCount { given: args.expansion.len(), joints, unit });
     }
-    let at = ExpansionPoint::from_values(&args.expansion, joints)?;
+    let at = expansion_point(&args.expansion, &robot)?;
     let physicality = robot.check_physical()?;
+    output::warnings(&robot.joints().iter().filter_map(driving_friction).collect::<Vec<_>>());
     let mass = robot.mass_matrix(&at.q);
     let physical = physicality_sentence(&physicality, &robot);
     let rows: Vec<Vec<f64>> = mass.row_iter().map(|row| row.iter().copied().collect()).collect();
@@ -70,6 +71,18 @@ pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
         format!("{}{}\n{physical}\n", description(&robot), dynamics(&robot, &at.q, &mass))
     })?;
     Ok(Outcome::Done)
+}
+
+/// Returns the warning that friction drives a joint, if it does.
+fn driving_friction(joint: &Joint) -> Option<String> {
+    let velocity = joint.friction_drives_at()?;
+    Some(format!(
+        "joint `{}`: friction drives it without load at {} {}; correct the signs of `coulomb` and \
+         `viscous`, or lower `velocity_limit`",
+        joint.name,
+        six_digits(velocity),
+        joint.kind.velocity_unit()
+    ))
 }
 
 /// Returns the tables of joints and links.

@@ -42,6 +42,30 @@ fn defects_are_found_with_line_and_joint() {
 }
 
 #[test]
+fn friction_that_drives_is_a_warning() {
+    let lab = Lab::new();
+    for robot in ["arm.toml", "lwa4p"] {
+        assert_eq!(lab.run(&format!("robot show {robot}")).exits(0).stderr, "");
+    }
+    lab.write("arm.toml", robot_toml().replace("viscous = [1,", "viscous = [-1,"));
+    let driven = lab.run("robot show arm.toml").exits(0).stderr;
+    let text = "warning: joint `axis2`: friction drives it without load at 3 rad/s";
+    assert!(driven.starts_with(text), "{driven}");
+}
+
+#[test]
+fn positions_beyond_the_limits_are_refused_or_a_warning() {
+    let lab = Lab::new();
+    lab.run("robot show lwa4p --lock joint1=5").fails_with(&["joint1", "at 5 rad", "limits"]);
+    for command in ["abstract --robot lwa4p", "robot show lwa4p"] {
+        let run = lab.run(&format!("{command} --expansion 0,0,0,0,0,9")).exits(0);
+        let text = "warning: joint `joint6`: --expansion has it at 9 rad, but its limits are";
+        assert!(run.stderr.contains(text), "{}", run.stderr);
+        assert_eq!(lab.run(&format!("{command} --expansion 0,1,0,0,0,3")).exits(0).stderr, "");
+    }
+}
+
+#[test]
 fn a_singular_model_is_refused() {
     refused(
         "armature = 0.5",

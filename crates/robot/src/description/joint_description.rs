@@ -296,7 +296,10 @@ impl JointDescription {
         Joint {
             name: self.name.clone(),
             kind: self.kind,
-            position_limits: self.position_limits.unwrap_or([-PI, PI]),
+            position_limits: self
+                .position_limits
+                .or(self.kind.default_limits())
+                .unwrap_or([-PI, PI]),
             velocity_limit: self.velocity_limit,
             gear_ratio: self.gear_ratio,
             armature: self.armature.unwrap_or(geared),

@@ -63,7 +63,7 @@ impl RobotDescription {
             if locks[..i].iter().any(|other| other.joint == lock.joint) {
                 return invalid(place, "it is locked twice".into(), "lock it once".into());
             }
-            let limits = joint.position_limits;
+            let limits = joint.position_limits.or(joint.kind.default_limits());
             if let Some(problem) = joint.kind.problem_of_lock(lock.position, limits) {
                 return invalid(
                     place,

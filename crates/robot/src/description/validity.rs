@@ -191,6 +191,12 @@ fn check_drive(joint: &JointDescription) -> Checked {
             || format!("{key} = {value} is negative"),
         )?;
     }
+    require(
+        joint.gear_ratio != Some(0.0),
+        "gear_ratio",
+        "give the gear's ratio, or remove it",
+        || "gear_ratio = 0 leaves no motor inertia".into(),
+    )?;
     finite("friction", &joint.friction.coulomb)?;
     finite("friction", &joint.friction.viscous)?;
     if let Some(FrictionErrors { coulomb, viscous }) = joint.friction.standard_errors {

@@ -98,6 +98,15 @@ impl Coulomb {
         moving * (braking + share * (driving - braking))
     }
 
+    /// Returns the magnitude of the torque \[N m\] at no load, in the mean over the quadrants; it
+    /// is negative where it drives. A torque that is the same in both directions does not count:
+    /// an identification takes up constant torques so.
+    pub(crate) fn magnitude_at_no_load(&self) -> f64 {
+        let forward = self.driving_forward.offset + self.braking_forward.offset;
+        let backward = self.driving_backward.offset + self.braking_backward.offset;
+        0.25 * (forward - backward)
+    }
+
     /// Returns the torque for one lane.
     fn torque_in_lane(&self, load: f64, qd: f64) -> f64 {
         if qd == 0.0 {

@@ -10,6 +10,9 @@ use reachtube_scalar::{Interval, Lanewise};
 /// viscous friction rises, and only small parts show that both do so together.
 const PARTS: usize = 16;
 
+/// Number of speeds at which the sign of friction is looked at.
+const SPEEDS: usize = 64;
+
 /// Friction of one joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Friction {
@@ -59,6 +62,25 @@ impl Friction {
         let coulomb = self.coulomb.softened_torque(load, qd, [1.0; 4]);
         let moving = (qd.abs() / NEAR_STANDSTILL).min(1.0);
         coulomb + self.stribeck.map_or(0.0, |stribeck| moving * stribeck.torque(qd))
+    }
+
+    /// Returns the velocity \[rad/s\], in either direction and up to `limit`, at which friction at
+    /// no load drives the joint most; `None` if it brakes everywhere. Coulomb friction, whose lines
+    /// may differ at no load, counts by its mean magnitude.
+    pub(crate) fn drives_at(&self, limit: f64) -> Option<f64> {
+        let speeds = (1..=SPEEDS).map(|k| limit * k as f64 / SPEEDS as f64);
+        let velocities = speeds.flat_map(|speed| [-speed, speed]);
+        let driving = |qd: f64| {
+            let parts = [
+                qd.signum() * self.coulomb.magnitude_at_no_load(),
+                self.stribeck.map_or(0.0, |stribeck| stribeck.torque(qd)),
+                self.viscous.torque(&qd),
+            ];
+            let rounding = 1e-9 * parts.iter().map(|part| part.abs()).sum::<f64>();
+            -qd.signum() * parts.iter().sum::<f64>() - rounding
+        };
+        let most = velocities.max_by(|a, b| driving(*a).total_cmp(&driving(*b)));
+        most.filter(|qd| driving(*qd) > 0.0)
     }
 
     /// Returns a range of the friction torque \[N m\], dry and viscous, over loads \[N m\] and

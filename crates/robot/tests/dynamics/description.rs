@@ -88,6 +88,8 @@ fn invalid_geometry_and_drives_are_refused() {
     assert!(
         error_with("mass = 2.0", "mass = 2.0\nrotor_inertia = 0.1").contains("add `gear_ratio`")
     );
+    let no_gear = error_with("mass = 2.0", "mass = 2.0\nrotor_inertia = 0.1\ngear_ratio = 0.0");
+    assert!(no_gear.contains(":10: joint `hinge`: gear_ratio = 0 leaves no motor"), "{no_gear}");
     assert!(
         error_with("mass = 2.0", "mass = 2.0\nposition_limits = [1.0, 1.0]")
             .contains("position_limits [1, 1] rad: the lower limit is not less")
@@ -98,6 +100,28 @@ fn invalid_geometry_and_drives_are_refused() {
     );
     let twice = format!("{PENDULUM}\n{}", PENDULUM.split_once("\n\n").unwrap().1);
     assert!(error_of(&twice).starts_with("pendulum.toml:13: joint `hinge`: the name occurs twice"));
+}
+
+#[test]
+fn friction_that_drives_is_found_within_the_limit_only() {
+    let drives_at = |friction: &str| {
+        let hinge = format!("{PENDULUM}velocity_limit = 2.0\nfriction = {{ {friction} }}\n");
+        Robot::from_toml(&hinge, "pendulum.toml").unwrap().joints()[0].friction_drives_at()
+    };
+    assert!(drives_at("coulomb = [-1.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0]").is_some());
+    assert_eq!(drives_at("viscous = [-1.0, 0.0, 0.0]").map(f64::abs), Some(2.0));
+    assert_eq!(drives_at("viscous = [1.0, -0.6, 0.0]"), Some(2.0));
+    let brakes = [
+        "",
+        "viscous = [1.0, 0.0, -0.2]",
+        // The lines of driving and braking cross away from no load.
+        "coulomb = [1.0, 0.1, -1.0, 0.1, 0.2, -0.3, -0.2, -0.3]",
+        // Identified with a constant torque.
+        "coulomb = [3.0, 0.0, 2.0, 0.0, 2.0, 0.0, 3.0, 0.0]",
+        "coulomb = [1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0, 0.0], viscous = [-0.4, 0.0, 0.0]",
+    ];
+    brakes.iter().for_each(|friction| assert_eq!(drives_at(friction), None, "{friction}"));
+    assert!(Robot::lwa4p().joints().iter().all(|joint| joint.friction_drives_at().is_none()));
 }
 
 #[test]

@@ -243,5 +243,6 @@ fn joints_of_a_toml_robot_are_locked() {
         lwa4p.description().with_locks(&[lock.parse().unwrap()]).unwrap_err().to_string()
     };
     assert!(refused("joint7=0").contains("joint `joint7`: the robot has no joint"));
-    assert!(refused("joint3=90").contains("it is locked at 90 rad, more than a turn"));
+    // A revolute joint has limits of half a turn if the description has none.
+    assert!(refused("joint3=5").contains("it is locked at 5 rad, but its limits are -3.14"));
 }

@@ -81,7 +81,8 @@ fn summary(answer: &Answer, written: &[&Path], args: &Arguments) -> Result<Summa
 /// Returns the job that the arguments describe, and what was done to logs for it.
 fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
     let basis = basis(args)?;
-    let settings = settings(args, basis.joints())?;
+    let robot = basis.robot()?.into_owned();
+    let settings = settings(args, &robot)?;
     let fit = FitSettings { groups: args.fit.clone(), pull: args.pull };
     let (job, preparation) = match args.horizon {
         None => {
@@ -92,7 +93,6 @@ fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
         Some(horizon) => {
             let paths = std::slice::from_ref(&args.data.data);
             let (torque, max_gap) = (settings.torque, args.data.max_gap);
-            let robot = basis.robot()?.into_owned();
             let cut = Cut::new(&robot, torque, horizon, max_gap, &settings.calibrate, paths)?;
             output::notes(&cut.notes);
             let settings = Settings { torque: Torque::Compensated, ..settings };

@@ -1,10 +1,12 @@
 //! The settings of `conform` from its arguments.
 
-use reachtube::abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
+use reachtube::abstraction::{Abstraction, PolynomialModel};
 use reachtube::conform::{Basis, Settings};
+use reachtube_robot::Robot;
 
 use super::arguments::Arguments;
 use crate::error::{Error, Result};
+use crate::expansion::expansion_point;
 
 /// Returns the robot, or the model in the file that `--abstraction` names.
 pub(super) fn basis(args: &Arguments) -> Result<Basis> {
@@ -14,10 +16,11 @@ pub(super) fn basis(args: &Arguments) -> Result<Basis> {
     })
 }
 
-pub(super) fn settings(args: &Arguments, joints: usize) -> Result<Settings> {
+pub(super) fn settings(args: &Arguments, robot: &Robot) -> Result<Settings> {
+    let joints = robot.joint_count();
     let usual = Settings {
         abstraction: Abstraction { model: args.paper_model, order: args.order },
-        expansion_point: ExpansionPoint::from_values(&args.expansion, joints)?,
+        expansion_point: expansion_point(&args.expansion, robot)?,
         until: args.data.until,
         gap_limit: args.data.max_gap.into(),
         ..Settings::new(args.data.torque.ok_or(Error::NoTorque)?, joints)
