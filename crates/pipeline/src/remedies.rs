@@ -79,10 +79,12 @@ impl TooWide<'_> {
         let mut tried = Trials::default();
         let (own, some) = (self.recordings, MOST_WINDOWS);
         let before = self.widths(self.trial, own, some)?;
-        if self.given.horizon.is_some() {
-            let largest = self.choices.largest_ratio.unwrap_or_default();
-            let best = longest(self.horizons, largest);
-            tried.add("horizon", best.horizon.to_string(), some, [&before, &Some(best.clone())]);
+        let largest = self.choices.largest_ratio.unwrap_or_default();
+        let best = longest(self.horizons, largest).horizon;
+        if self.given.horizon.is_some_and(|given| given != best) {
+            // The sets of `horizons` are without the allowance.
+            let after = self.widths_over(best, self.trial, own, some)?;
+            tried.add("horizon", best.to_string(), some, [&before, &after]);
         }
         if let Some(equations) = self.given.equations.map(other) {
             let after = self.widths(&Trial { equations, ..self.trial.clone() }, own, some)?;
@@ -113,14 +115,24 @@ impl TooWide<'_> {
         Ok(self.findings(tried.0))
     }
 
-    /// Returns how wide the sets are at the horizon; `None` if none were found.
+    /// Returns how wide the sets are at the horizon of the model; `None` if none were found.
     fn widths(
         &self,
         trial: &Trial,
         recordings: &Prepared,
         most: usize,
     ) -> Result<Option<HorizonWidths>> {
-        let horizon = self.choices.horizon.unwrap_or_default();
+        self.widths_over(self.choices.horizon.unwrap_or_default(), trial, recordings, most)
+    }
+
+    /// Returns how wide the sets are at a horizon; `None` if none were found.
+    fn widths_over(
+        &self,
+        horizon: f64,
+        trial: &Trial,
+        recordings: &Prepared,
+        most: usize,
+    ) -> Result<Option<HorizonWidths>> {
         let widths = try_horizon(trial, recordings, horizon, most)?;
         Ok(widths.filter(|widths| widths.reason.is_none()))
     }

@@ -112,6 +112,24 @@ fn choices_that_are_given_are_taken_and_called_so() {
     }
 }
 
+#[test]
+fn the_horizon_that_was_given_is_no_remedy() {
+    let lab = lab();
+    lab.run("model --robot pendulum.toml --data logs --torque motor --out arm").exits(0);
+    let choices = lab.read("arm/choices.toml");
+    let horizon = choices.lines().find_map(|line| line.strip_prefix("horizon = ")).unwrap();
+    let horizon: f64 = horizon.parse().unwrap();
+    // An allowance far above the torques makes every set too wide.
+    let wide = choices.lines().map(|line| match line.starts_with("allowance = ") {
+        true => "allowance = [0.0, 0.0, 50.0]",
+        false => line,
+    });
+    lab.write("wide.toml", wide.collect::<Vec<_>>().join("\n"));
+    let run = lab.run("model --settings wide.toml --out wide").exits(3);
+    let text = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(!text.contains(&format!("`horizon = {horizon}`")), "{text}");
+}
+
 /// Returns a log of the pendulum as messages of a topic; `rename` names the joint.
 fn messages(csv: &str, topic: &str, rename: &str) -> Vec<Message> {
     let message = |line: &str| {
