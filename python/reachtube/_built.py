@@ -11,6 +11,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _html, _reachtube
@@ -22,7 +23,7 @@ from ._model import Model
 from ._progress import Progress, shown
 from ._record import Record
 from ._robot import Robot, native_of
-from ._settings import Torque
+from ._settings import Group, Torque
 from .errors import ReachtubeWarning, SettingError
 
 log = logging.getLogger("reachtube")
@@ -174,7 +175,7 @@ class BuiltModel(Record):
         return content
 
     def to_pandas(self) -> Any:
-        """Return one row for each joint."""
+        """Return a pandas DataFrame with one row for each joint."""
         import pandas
 
         return pandas.DataFrame(self._answer["joints"])
@@ -220,6 +221,9 @@ def model(
     horizon: float | None = None,
     held_out: str | Sequence[str] | None = None,
     gains: npt.ArrayLike | None = None,
+    fit: Sequence[Group] | None = None,
+    pull: float | None = None,
+    max_gap: float | None = None,
     columns: Mapping[str, str | int] | None = None,
     topic: str | Sequence[str] | None = None,
     joints: Sequence[str] | None = None,
@@ -254,6 +258,14 @@ def model(
     gains
         Factors of the recorded torques, n; for motor currents in N m/A. They also state that the
         torques are right where they contradict the robot's description.
+    fit
+        Groups of parameters of the nominal model that are fitted for small sets, as for `conform`;
+        takes minutes. By default as in ``settings``, or none.
+    pull
+        The weight of the pull of a fit, as for `conform`.
+    max_gap
+        Longest time between two samples, above 0 s; the torque is held over it. By default 1.9
+        times the usual sample time, and 10 times if sample times jitter.
     columns
         Columns of CSV files whose names do not tell, as ``{"q": "pos_{}", "first": 0}``; the keys
         are ``q``, ``qd``, ``tau``, ``current``, ``time``, ``first``, ``time_unit`` and ``angle``.
@@ -292,17 +304,13 @@ def model(
     >>> print(built)  # doctest: +SKIP
     >>> built.save("arm")  # doctest: +SKIP
     """
-    given: dict[str, Any] = {}
+    given = _numbers(horizon=horizon, max_gap=max_gap, pull=pull, gains=gains)
     if torque is not None:
         given["torque"] = torque
-    if horizon is not None:
-        if not 0 < real("horizon", horizon) < float("inf"):
-            raise SettingError(f"horizon is {horizon} s; it must be above 0")
-        given["horizon"] = real("horizon", horizon)
     if held_out is not None:
         given["held-out"] = names(held_out)
-    if gains is not None:
-        given["gains"] = numbers("gains", gains).ravel().tolist()
+    if fit is not None:
+        given["fit"] = names(fit)
     if columns is not None:
         given["columns"] = dict(columns)
     log_table = {"topic": names(topic), "joints": names(joints), "marker": marker, "time": time}
@@ -322,3 +330,29 @@ def model(
         if finding.severity != "info":
             warnings.warn(str(finding), ReachtubeWarning, 2)
     return found
+
+
+def _numbers(
+    *,
+    horizon: float | None,
+    max_gap: float | None,
+    pull: float | None,
+    gains: npt.ArrayLike | None,
+) -> dict[str, Any]:
+    """Return the numbers that are given, by the keys of a file of choices."""
+    given: dict[str, Any] = {}
+    for name, value in {"horizon": horizon, "max_gap": max_gap}.items():
+        if value is not None:
+            if not 0 < real(name, value) < float("inf"):
+                raise SettingError(f"{name} is {value} s; it must be above 0")
+            given[name.replace("_", "-")] = real(name, value)
+    if pull is not None:
+        if not 0 <= real("pull", pull) <= 1:
+            raise SettingError(f"pull is {pull}; give a weight from 0 to 1")
+        given["pull"] = real("pull", pull)
+    if gains is not None:
+        factors = numbers("gains", gains).ravel()
+        if not np.isfinite(factors).all():
+            raise SettingError(f"gains is {factors.tolist()}; give finite numbers")
+        given["gains"] = factors.tolist()
+    return given

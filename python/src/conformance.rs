@@ -129,12 +129,15 @@ pub(crate) fn fit_settings(groups: &[String], pull: Option<f64>) -> Result<Optio
     let groups = serde_json::to_value(groups).and_then(serde_json::from_value);
     let groups: Vec<Group> = groups.map_err(|error| Failure::Setting(format!("fit: {error}")))?;
     match (groups.is_empty(), pull) {
-        (true, Some(_)) => {
-            Err(Failure::Setting("pull is the weight of a fit, and fit names no group".into()))
-        }
+        (true, Some(_)) => Err(pull_without_fit()),
         (true, None) => Ok(None),
         (false, _) => Ok(Some(FitSettings { groups, pull })),
     }
+}
+
+/// Returns the failure about a pull where nothing is fitted.
+pub(crate) fn pull_without_fit() -> Failure {
+    Failure::Setting("pull is the weight of a fit, and fit names no group".into())
 }
 
 /// Checks the text of a model file; errors name it `origin`.

@@ -12,7 +12,7 @@ use reachtube::{Progress, Robot};
 use serde_json::{Map, Value, json};
 
 use crate::abstraction::NativeAbstraction;
-use crate::conformance::basis;
+use crate::conformance::{basis, pull_without_fit};
 use crate::failure::{Failure, Result};
 use crate::findings::list;
 use crate::logs_on_disk::LogsOnDisk;
@@ -40,7 +40,11 @@ pub(crate) fn model(
         let of_file = settings.as_deref().map(Choices::load).transpose()?.unwrap_or_default();
         // The robot is here already; the file of choices may name another.
         let of_file = Choices { robot: None, lock: Vec::new(), ..of_file };
+        let gives_pull = given.pull.is_some();
         let mut choices = of_file.replaced_by(given);
+        if gives_pull && choices.fit.as_ref().is_none_or(Vec::is_empty) {
+            return Err(pull_without_fit());
+        }
         if !paths.is_empty() || runs.is_some() {
             choices.data.clear();
         }

@@ -285,3 +285,25 @@ def test_columns_and_logs_that_do_not_fit_are_refused(
     (tmp_path / "run.mcap").write_bytes(b"no log")
     with pytest.raises(rt.ReachtubeError, match="neither MCAP nor SQLite"):
         rt.model(arm, tmp_path, "motor")
+
+
+def test_a_fit_is_what_its_arguments_say(
+    arm: rt.Robot, logs: list[rt.Run], choices: Path, tmp_path: Path
+) -> None:
+    found = rt.model(
+        arm, logs, "motor", horizon=0.05, settings=choices, fit=["viscous"], pull=0.02, max_gap=0.1
+    )
+    assert {choice.key: choice.value for choice in found.choices}["fit"] == "viscous"
+    assert found.model.verified
+    found.save(tmp_path)
+    written = (tmp_path / "choices.toml").read_text().splitlines()
+    assert {'fit = ["viscous"]', "pull = 0.02", "max-gap = 0.1"} <= set(written)
+    for wrong, words in [
+        ({"pull": 0.02}, "fit names no group"),
+        ({"fit": ["viscous"], "pull": 2.0}, "pull is 2.0; give a weight from 0 to 1"),
+        ({"fit": ["mass"]}, "fit: unknown variant `mass`"),
+        ({"max_gap": 0.0}, "max_gap is 0.0 s"),
+        ({"gains": [np.nan] * 6}, "gains is .*; give finite numbers"),
+    ]:
+        with pytest.raises(rt.SettingError, match=words):
+            rt.model(arm, logs, "motor", **wrong)  # type: ignore[arg-type]
