@@ -67,31 +67,71 @@ class Identification(Record):
         return content
 
     def to_pandas(self) -> Any:
-        """Return one row for each identifiable combination of parameters."""
+        """Return a pandas DataFrame with one row for each identifiable combination."""
         import pandas
 
         return pandas.DataFrame(self.parameters)
 
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        """Write the robot file, with standard errors. A file that exists is replaced with
-        ``force=True`` only."""
+        """Write the robot file, with standard errors.
+
+        Parameters
+        ----------
+        path
+            The file, in TOML; its folder is made if it does not exist.
+        force
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        ReachtubeError
+            If the file exists and ``force`` is false, or cannot be written.
+        """
         write_new(Path(path), self._kept("robot"), force=force)
 
     def report(self, path: str | PathLike[str], *, force: bool = False) -> Path:
-        """Write the page about the identification, and return its path."""
+        """Write the page about the identification.
+
+        Parameters
+        ----------
+        path
+            The file, in HTML; its folder is made if it does not exist.
+        force
+            Whether a file that exists is replaced.
+
+        Returns
+        -------
+        Path
+            The page.
+
+        Raises
+        ------
+        ReachtubeError
+            If the file exists and ``force`` is false, or cannot be written.
+        """
         write_new(Path(path), self._kept("page"), force=force)
         return Path(path)
 
     def save_urdf(
         self, original: Robot, path: str | PathLike[str], *, force: bool = False
     ) -> None:
-        """Write the URDF that `original` was read from, with the identified values, and the TOML
-        file with what a URDF has no elements for beside it.
+        """Write a URDF with the identified values, and a TOML file with the others beside it.
+
+        Parameters
+        ----------
+        original
+            The robot that `Robot.from_urdf` or `Robot.load` read from a URDF; all other text of
+            the URDF stays as it is.
+        path
+            The URDF to write. The TOML file has the same name, with the suffix ``.toml``.
+        force
+            Whether files that exist are replaced.
 
         Raises
         ------
         ReachtubeError
-            Where `original` was not read from a URDF.
+            If `original` was not read from a URDF, a file exists and ``force`` is false, or a file
+            cannot be written.
         """
         texts = original._native.updated_urdf(self.robot._native)
         if texts is None:
@@ -106,8 +146,8 @@ class Identification(Record):
         return f"<Identification of {name}: {determined} of {count} combinations determined>"
 
 
-def _recorded(logs: Logs) -> tuple[list[str], list[_reachtube.Run]]:
-    """Return paths and runs."""
+def _recorded(logs: Logs) -> tuple[list[str], list[tuple[_reachtube.Run, int | None]]]:
+    """Return paths, and runs with their places in the order of recording."""
     items = [logs] if isinstance(logs, (Run, str, PathLike)) else logs
     if not isinstance(items, Iterable):
         raise SettingError(f"recordings are of type {type(logs).__name__}; give runs or paths")
@@ -117,7 +157,7 @@ def _recorded(logs: Logs) -> tuple[list[str], list[_reachtube.Run]]:
             kind = type(item).__name__
             raise SettingError(f"a recording is of type {kind}; give runs or paths")
     paths = [fspath(item) for item in items if not isinstance(item, Run)]
-    return paths, [item._native for item in items if isinstance(item, Run)]
+    return paths, [(item._native, item.order) for item in items if isinstance(item, Run)]
 
 
 @renamed(link_torque="torque=\"link\"")

@@ -235,7 +235,7 @@ def report(
 ) -> str: ...
 def identify(
     robot: Robot,
-    recorded: list[tuple[list[str], list[Run]]],
+    recorded: list[tuple[list[str], list[tuple[Run, int | None]]]],
     toml: str | None,
     given: str,
     folder: str,

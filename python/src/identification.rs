@@ -19,22 +19,28 @@ use crate::watched::watched;
 /// with standard errors, and the report page.
 type Identified = (String, String, String);
 
-/// Recordings of one use: paths, and runs in memory.
-type Recorded<'py> = (Vec<PathBuf>, Vec<PyRef<'py, NativeRun>>);
+/// Recordings of one use: paths, and runs in memory with their places in the order of recording.
+type Recorded<'py> = (Vec<PathBuf>, Vec<(PyRef<'py, NativeRun>, Option<u64>)>);
 
 /// Writes runs in memory as CSV files, whose numbers are read back to the last bit.
 fn entries(
     paths: Vec<PathBuf>,
-    runs: &[Arc<Run>],
+    runs: &[(Arc<Run>, Option<u64>)],
     folder: &std::path::Path,
     name: &str,
 ) -> Result<Vec<LogEntry>> {
     let mut entries: Vec<LogEntry> = paths.into_iter().map(LogEntry::Path).collect();
-    for (number, run) in runs.iter().enumerate() {
+    for (number, (run, order)) in runs.iter().enumerate() {
         let path = folder.join(format!("{name}_{}.csv", number + 1));
         let text = csv(run);
         reachtube::write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
-        entries.push(LogEntry::Path(path));
+        entries.push(LogEntry::Stretch {
+            path,
+            from: 0.0,
+            until: None,
+            order: *order,
+            compensated: false,
+        });
     }
     Ok(entries)
 }
@@ -72,7 +78,8 @@ pub(crate) fn identify(
 ) -> PyResult<Identified> {
     let robot: Arc<Robot> = Arc::clone(&robot.robot);
     let recorded = recorded.map(|(paths, runs)| {
-        (paths, runs.iter().map(|run| Arc::clone(&run.run)).collect::<Vec<_>>())
+        let runs = runs.iter().map(|(run, order)| (Arc::clone(&run.run), *order));
+        (paths, runs.collect::<Vec<_>>())
     });
     watched(py, progress.as_ref(), move |watch| {
         let mut settings = settings(toml.as_deref(), &given)?;

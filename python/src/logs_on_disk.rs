@@ -1,9 +1,10 @@
 //! Logs as the product reads them: files.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use reachtube::RunSource;
-use reachtube::recordings::{GapLimit, ReadOptions};
+use reachtube::recordings::{GapLimit, ReadOptions, RunEntry};
 use reachtube_files::distinct_names;
 use tempfile::TempDir;
 
@@ -27,7 +28,8 @@ impl LogsOnDisk {
         let names = distinct_names(runs.runs().iter().map(|run| stem(&run.file)), &[".csv"]);
         let options =
             ReadOptions { gap_limit: GapLimit::Seconds(f64::INFINITY), ..ReadOptions::default() };
-        let mut index = String::from("file,suite,motion,simulated\n");
+        let orders = orders(runs.runs());
+        let mut index = String::from("file,suite,motion,simulated,order\n");
         for (number, name) in names.iter().enumerate() {
             let run = runs.read(number, &options);
             let run = run
@@ -39,7 +41,8 @@ impl LogsOnDisk {
             let cells = [entry.suite.as_deref(), entry.motion.as_deref()];
             let cells = cells.map(|cell| quoted(cell.unwrap_or_default()));
             let file = quoted(&format!("{name}.csv"));
-            index += &format!("{file},{},{}\n", cells.join(","), entry.simulated);
+            let (cells, order) = (cells.join(","), &orders[number]);
+            index += &format!("{file},{cells},{},{order}\n", entry.simulated);
         }
         reachtube::write::atomically(&folder.path().join("runs.csv"), |out| {
             out.write_all(index.as_bytes())
@@ -68,6 +71,23 @@ impl LogsOnDisk {
             Some(folder) => without_folder(text, folder.path()),
         }
     }
+}
+
+/// Returns the cell of the column `order` of each run. It is empty for runs without a suite, which
+/// are in no order, and for a suite in which two runs have the same, as the runs of two data sets
+/// may: the place among the runs counts then.
+fn orders(runs: &[RunEntry]) -> Vec<String> {
+    let mut known: BTreeMap<&str, BTreeSet<u64>> = BTreeMap::new();
+    let mut repeated = BTreeSet::new();
+    for run in runs {
+        let Some(suite) = run.suite.as_deref() else { continue };
+        if !known.entry(suite).or_default().insert(run.order) {
+            repeated.insert(suite);
+        }
+    }
+    let is_used = |suite: &&str| !repeated.contains(suite);
+    let cell = |run: &RunEntry| run.suite.as_deref().filter(is_used).map(|_| run.order.to_string());
+    runs.iter().map(|run| cell(run).unwrap_or_default()).collect()
 }
 
 /// Returns a cell of a CSV file.

@@ -153,13 +153,17 @@ impl RunSource for SharedSource {
     }
 }
 
-/// Returns a run as a CSV file, whose numbers are read back to the last bit.
+/// Returns a run as a CSV file, whose numbers are read back to the last bit, with the temperatures
+/// if it has them.
 pub(crate) fn csv(run: &Run) -> String {
     let mut text = String::from("t");
     column_names(run.joints).for_each(|column| text += &format!(",{column}"));
+    let warm = if run.temperatures.is_empty() { 0 } else { run.joints };
+    (1..=warm).for_each(|joint| text += &format!(",temp{joint}"));
     for k in 0..run.len() {
         text += &format!("\n{}", run.times[k]);
-        let numbers = run.state(k).iter().chain(run.torque(k));
+        let temperatures = &run.temperatures[k * warm..(k + 1) * warm];
+        let numbers = run.state(k).iter().chain(run.torque(k)).chain(temperatures);
         numbers.for_each(|number| text += &format!(",{number}"));
     }
     text

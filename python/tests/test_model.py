@@ -9,11 +9,13 @@ import subprocess
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import reachtube as rt
+from reachtube import _conform
 
 from conftest import write_csv
 
@@ -307,3 +309,31 @@ def test_a_fit_is_what_its_arguments_say(
     ]:
         with pytest.raises(rt.SettingError, match=words):
             rt.model(arm, logs, "motor", **wrong)  # type: ignore[arg-type]
+
+
+def test_the_order_and_the_temperatures_of_runs_are_kept(
+    arm: rt.Robot, logs: list[rt.Run]
+) -> None:
+    warm: dict[str, Any] = {"torque": "motor", "fit": ["warm-up"], "horizon": 9.0}
+    with pytest.raises(rt.ReachtubeError, match="warm-up, for wave_0"):
+        rt.model(arm, logs, **warm)
+    ordered, heated = [], []
+    for order, run in zip((7, 3), logs, strict=False):
+        part = (run.t, run.q, run.qd, run.tau)
+        ordered.append(rt.Run(*part, suite="A", motion="m", order=order, name=run.name))
+        heat = np.full(run.q.shape, 20.0 + order)
+        heated.append(rt.Run(*part, temperature=heat, name=run.name))
+    for given in (ordered, heated):
+        with pytest.raises(rt.ReachtubeError, match="as long as the horizon of 9 s"):
+            rt.model(arm, given, **warm)
+    # Windows of logs have both.
+    for given, expected in [(ordered, {7, 3}), (heated, {1})]:
+        windows, _, _ = _conform._cut(arm, given, "motor", 0.5, None, None, ())
+        assert {row[4] for row in windows.index()} == expected
+        warmth = windows.read(0).arrays()[4]
+        assert (warmth is None) == (given is ordered)
+        assert warmth is None or set(warmth.ravel()) == {27.0}
+    # Runs of two data sets may have the same order.
+    same = [rt.Run(run.t, run.q, run.qd, run.tau, suite="A", order=1) for run in logs[:2]]
+    windows, _, _ = _conform._cut(arm, same, "motor", 0.5, None, None, ())
+    assert {row[4] for row in windows.index()} == {1, 2}
