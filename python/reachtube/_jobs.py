@@ -13,8 +13,8 @@ from . import _reachtube
 from ._manifest import Recording
 from ._robot import Robot
 from ._store import read, write
+from ._tables import run_of_columns
 from .errors import ReachtubeError
-from .io import _run_of_columns
 
 Own = TypeVar("Own")
 
@@ -82,7 +82,7 @@ def read_one(place: int, row: Recording, part: Part) -> tuple[Entry, Read]:
     try:
         table = parquet.read_table(io.BytesIO(content))
         columns = {name: table.column(name).to_numpy() for name in table.column_names}
-        run = _run_of_columns(row.file, columns, None, row.suite, row.motion)
+        run = run_of_columns(row.file, columns, None, row.suite, row.motion)
     except (ReachtubeError, ArrowInvalid) as error:
         return entry, (str(error), "record it again, or leave it out")
     return entry, run._native

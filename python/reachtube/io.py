@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from os import PathLike, fspath
 from pathlib import Path
@@ -17,9 +17,10 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _reachtube
-from ._arrays import Array, names, numbers
+from ._arrays import Array, names
 from ._recordings import Recordings, Run
-from .errors import Defect, DefectsError, ReachtubeError, ReachtubeWarning, SettingError
+from ._tables import check_finite, places_of, run_of_arrays, run_of_columns
+from .errors import ReachtubeError, ReachtubeWarning
 
 __all__ = ["bag", "hdf5", "npz", "parquet", "ros1"]
 
@@ -85,6 +86,10 @@ def bag(
     max_gap
         Longest time between two samples, s.
 
+    Returns
+    -------
+    Recordings
+
     Raises
     ------
     DefectsError
@@ -111,73 +116,6 @@ def bag(
     )
 
 
-def _run_of_columns(
-    origin: str,
-    columns: Mapping[str, Any],
-    joints: Sequence[str] | None,
-    suite: str | None,
-    motion: str | None,
-) -> Run:
-    """Return the run of columns t, q1.., qd1.., tau1.. or, with `joints`, position.NAME, ..."""
-    if joints is None:
-        count = 0
-        while f"q{count + 1}" in columns:
-            count += 1
-        if count == 0:
-            raise ReachtubeError(
-                f"{origin}: there is no column q1; name the joints of columns position.NAME with "
-                f"joints=, or the columns as in the CSV format; there are {', '.join(columns)}"
-            )
-        wanted = {
-            part: [f"{prefix}{j + 1}" for j in range(count)]
-            for part, prefix in {"q": "q", "qd": "qd", "tau": "tau"}.items()
-        }
-    else:
-        prefixes = {"q": "position", "qd": "velocity", "tau": "effort"}
-        wanted = {part: [f"{p}.{name}" for name in joints] for part, p in prefixes.items()}
-    missing = [name for part in ("q", "qd", "tau") for name in wanted[part] if name not in columns]
-    if "t" not in columns:
-        missing.insert(0, "t")
-    if missing:
-        raise ReachtubeError(
-            f"{origin}: these columns are missing: {', '.join(missing)}; there are "
-            f"{', '.join(columns)}"
-        )
-    parts: dict[str, Array] = {
-        part: np.column_stack([numbers(name, columns[name]) for name in own])
-        for part, own in wanted.items()
-    }
-    times = numbers("t", columns["t"])
-    warm = [name for j in range(len(wanted["q"])) if (name := f"temp{j + 1}") in columns]
-    if joints is None and len(warm) == len(wanted["q"]):
-        parts["temp"] = np.column_stack([numbers(name, columns[name]) for name in warm])
-    _check_finite(origin, {"t": times[:, None], **parts})
-    return Run(times, parts["q"], parts["qd"], parts["tau"], name=Path(origin).name, suite=suite,
-               motion=motion, temperature=parts.get("temp"))
-
-
-def _check_finite(origin: str, parts: Mapping[str, Array]) -> None:
-    """Name every column that holds a number which is not finite."""
-    defects = []
-    for name, values in parts.items():
-        for j in range(values.shape[1]):
-            wrong = np.flatnonzero(~np.isfinite(values[:, j]))
-            if len(wrong):
-                joint = None if name == "t" else j + 1
-                problem = (
-                    f"{name} is not a finite number in {len(wrong)} samples, first in sample "
-                    f"{wrong[0]} (from 0)"
-                )
-                remedy = "drop these samples, or record again"
-                defects.append(Defect(origin, None, joint, "value", problem, remedy))
-    if defects:
-        places = [
-            f"{origin}{f': joint {d.joint}' if d.joint else ''}: {d.problem}; {d.remedy}"
-            for d in defects
-        ]
-        raise DefectsError("\n".join(places), tuple(defects))
-
-
 def parquet(
     path: Path_,
     *,
@@ -198,13 +136,24 @@ def parquet(
         The suite of the run.
     motion
         The motion of the run.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    DefectsError
+        Values that are not finite.
+    ReachtubeError
+        A file that cannot be read, or that lacks a column.
     """
     from pyarrow import parquet as files
 
     with _opened(path):
         found = files.read_table(fspath(path))
     columns = {name: found.column(name).to_numpy() for name in found.column_names}
-    return _run_of_columns(fspath(path), columns, joints, suite, motion)
+    return run_of_columns(fspath(path), columns, joints, suite, motion)
 
 
 def npz(
@@ -226,10 +175,21 @@ def npz(
         The suite of the run.
     motion
         The motion of the run.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    DefectsError
+        Values that are not finite.
+    ReachtubeError
+        A file that cannot be read, or that lacks an array or a joint.
     """
     with _opened(path), np.load(path, allow_pickle=False) as file:
         arrays = {name: file[name] for name in file.files}
-    return _run_of_arrays(fspath(path), arrays, joints, suite, motion)
+    return run_of_arrays(fspath(path), arrays, joints, suite, motion)
 
 
 def hdf5(
@@ -255,6 +215,17 @@ def hdf5(
         The suite of the run.
     motion
         The motion of the run.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    DefectsError
+        Values that are not finite.
+    ReachtubeError
+        A file that cannot be read, or that lacks the group, an array or a joint.
     """
     import h5py
 
@@ -265,52 +236,7 @@ def hdf5(
         arrays = {name: found[name][()] for name in found if hasattr(found[name], "dtype")}
         if "joints" in found.attrs:
             arrays.setdefault("joints", found.attrs["joints"])
-    return _run_of_arrays(fspath(path), arrays, joints, suite, motion)
-
-
-def _run_of_arrays(
-    origin: str,
-    arrays: Mapping[str, Any],
-    joints: Sequence[str] | None,
-    suite: str | None,
-    motion: str | None,
-) -> Run:
-    missing = [name for name in ("t", "q", "qd", "tau") if name not in arrays]
-    if missing:
-        there = ", ".join(arrays) or "none"
-        raise ReachtubeError(
-            f"{origin}: these arrays are missing: {', '.join(missing)}; there are {there}"
-        )
-    order: Any = slice(None)
-    if joints is not None:
-        order = _order(origin, arrays.get("joints"), joints)
-    parts = {}
-    for name in ("q", "qd", "tau"):
-        values = numbers(name, arrays[name])
-        if values.ndim != 2:
-            raise SettingError(f"{origin}: {name} has the shape {values.shape}; give K x n")
-        parts[name] = values[:, order]
-    times = numbers("t", arrays["t"])
-    if times.ndim != 1:
-        raise SettingError(f"{origin}: t has the shape {times.shape}; give one axis")
-    _check_finite(origin, {"t": times[:, None], **parts})
-    return Run(times, parts["q"], parts["qd"], parts["tau"], name=Path(origin).name, suite=suite,
-               motion=motion)
-
-
-def _order(origin: str, found: Any, joints: Sequence[str]) -> list[int]:
-    """Return the column of each joint."""
-    if found is None:
-        raise ReachtubeError(f"{origin}: it does not name its joints; leave joints= out, or add "
-                             "an array joints with their names")
-    known = [name.decode() if isinstance(name, bytes) else str(name) for name in np.ravel(found)]
-    missing = [name for name in joints if name not in known]
-    if missing:
-        raise ReachtubeError(
-            f"{origin}: these joints are missing: {', '.join(missing)}; there are "
-            f"{', '.join(known)}"
-        )
-    return [known.index(name) for name in joints]
+    return run_of_arrays(fspath(path), arrays, joints, suite, motion)
 
 
 def ros1(
@@ -335,6 +261,17 @@ def ros1(
         The suite of the run.
     motion
         The motion of the run.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    DefectsError
+        Values that are not finite.
+    ReachtubeError
+        A bag that cannot be read, or that lacks the topic or a joint.
     """
     from rosbags.highlevel import AnyReader
 
@@ -356,7 +293,7 @@ def ros1(
     q, qd, tau = (np.array(part) for part in zip(*rows, strict=True))
     # From the first stamp on, nanoseconds are exact in double precision.
     times = np.array([stamp - stamps[0] for stamp in stamps]) / 1e9
-    _check_finite(origin, {"q": q, "qd": qd, "tau": tau})
+    check_finite(origin, {"q": q, "qd": qd, "tau": tau})
     return Run(times, q, qd, tau, name=Path(origin).name, suite=suite, motion=motion)
 
 
@@ -364,7 +301,7 @@ def _message(
     origin: str, count: int, message: Any, joints: Iterable[str]
 ) -> tuple[Array, Array, Array]:
     """Return position, velocity and effort of a message, in the order of the joints."""
-    order = _order(f"{origin}, message {count} (from 0)", message.name, list(joints))
+    order = places_of(f"{origin}, message {count} (from 0)", message.name, list(joints))
     parts = []
     for name in ("position", "velocity", "effort"):
         values = np.asarray(getattr(message, name), dtype=np.float64)
