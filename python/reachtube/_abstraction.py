@@ -28,12 +28,26 @@ class Abstraction:
     __slots__ = ("_content", "_native")
 
     def __init__(self, native: _reachtube.Abstraction) -> None:
+        if not isinstance(native, _reachtube.Abstraction):
+            raise SettingError(
+                "abstract(robot) makes an abstraction, and Abstraction.load(PATH) reads its file; "
+                f"Abstraction was given {native!r:.100}"
+            )
         self._native = native
         self._content: dict[str, Any] = json.loads(native.to_json())
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Abstraction:
         """Read a file that `save` or ``reachtube abstract --out`` wrote.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Returns
+        -------
+        Abstraction
 
         Raises
         ------
@@ -47,7 +61,20 @@ class Abstraction:
         return cls(_reachtube.Abstraction.parse(text, fspath(path)))
 
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        """Write the model's file. A file that exists is replaced with ``force=True`` only."""
+        """Write the model's file, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file, in JSON; its folder is made if it does not exist.
+        force
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        ReachtubeError
+            If the file exists and ``force`` is false, or cannot be written.
+        """
         write_new(Path(path), self._native.to_json(), force=force)
 
     @property
@@ -87,18 +114,38 @@ class Abstraction:
         return self._native.formulas()
 
     def state(self, q: npt.ArrayLike, qd: npt.ArrayLike) -> Array:
-        """Return the model's state, shape (..., N), at q and qd of shape (..., n).
+        """Return the model's state at positions and velocities.
 
-        N is 2n, or 4n where the model has sines and cosines among its states.
+        Parameters
+        ----------
+        q : array of shape (..., n)
+            Positions, rad (m for prismatic joints).
+        qd : array of shape (..., n)
+            Velocities, rad/s (m/s for prismatic joints).
+
+        Returns
+        -------
+        array of shape (..., N)
+            N is 2n, or 4n if the model has sines and cosines among its states.
         """
         shape, [q, qd] = batch(self.joints, q=q, qd=qd)
         found = self._native.states(q, qd)
         return found.reshape((*shape, found.shape[1]))
 
     def rate(self, x: npt.ArrayLike, u: npt.ArrayLike) -> Array:
-        """Return ẋ, shape (..., N), at states of shape (..., N) and inputs of shape (..., n).
+        """Return ẋ = f(x, u).
 
-        States and inputs must have the same leading axes.
+        Parameters
+        ----------
+        x : array of shape (..., N)
+            States, as `state` returns them.
+        u : array of shape (..., n)
+            Inputs, N m (N for prismatic joints), with the same leading axes as the states.
+
+        Returns
+        -------
+        array of shape (..., N)
+            In the units of the states per second.
         """
         states, inputs = numbers("x", x), numbers("u", u)
         if states.ndim == 0 or states.shape[:-1] != inputs.shape[:-1]:
@@ -160,6 +207,10 @@ def abstract(
         Largest number of parts that the box is cut into.
     progress
         As for `conform`.
+
+    Returns
+    -------
+    Abstraction
 
     Raises
     ------

@@ -45,7 +45,7 @@ class Excitation(Values):
     random_condition: float
 
     def to_pandas(self) -> Any:
-        """Return one row for each sample: t, q1.., qd1.., qdd1..."""
+        """Return a pandas DataFrame with one row for each sample: t, q1.., qd1.., qdd1..."""
         import pandas
 
         columns = {"t": self.t}
@@ -106,6 +106,10 @@ def excite(
         The seed of the random numbers.
     rate
         Samples per second; the period has 10 million samples at most.
+
+    Returns
+    -------
+    Excitation
 
     Raises
     ------

@@ -87,7 +87,7 @@ class Flowpipe(Values):
         return self.ended is None
 
     def to_pandas(self) -> Any:
-        """Return one row for each sample: t, then lower and upper bound of each state."""
+        """Return a pandas DataFrame: t, then lower and upper bound of each state at samples."""
         import pandas
 
         columns = {"t": self.t}

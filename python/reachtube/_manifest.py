@@ -51,7 +51,17 @@ def write_manifest(
     *,
     storage_options: Mapping[str, Any] | None = None,
 ) -> None:
-    """Write a manifest as a Parquet file, to any store that fsspec opens."""
+    """Write a manifest as a Parquet file, to any store that fsspec opens.
+
+    Parameters
+    ----------
+    path
+        The path or address of the file; a file that exists is replaced.
+    recordings
+        The lines of the manifest.
+    storage_options
+        Options of the store, for fsspec.
+    """
     import fsspec
     import pyarrow
     from pyarrow import parquet
@@ -68,14 +78,25 @@ def write_manifest(
 def read_manifest(
     path: str | PathLike[str], *, storage_options: Mapping[str, Any] | None = None
 ) -> list[Recording]:
-    """Read a manifest: a Parquet file with the columns ``file`` and ``suite``, and if it has them
-    ``motion``, ``order``, ``sha256``, ``robot`` and ``temperature``. Other columns are for its
-    owner.
+    """Read a manifest.
+
+    Parameters
+    ----------
+    path
+        The path or address of a Parquet file with the columns ``file`` and ``suite``, and if it has
+        them ``motion``, ``order``, ``sha256``, ``robot`` and ``temperature``. Other columns are for
+        its owner.
+    storage_options
+        Options of the store, for fsspec.
+
+    Returns
+    -------
+    list of Recording
 
     Raises
     ------
     ReachtubeError
-        Where the file is missing, or lacks a column or a value.
+        If the file is missing, or lacks a column or a value.
     """
     from pyarrow import ArrowInvalid, parquet
 

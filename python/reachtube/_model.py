@@ -33,9 +33,26 @@ class Model(Record):
 
     __slots__ = ()
 
+    def __init__(self, text: str) -> None:
+        if not isinstance(text, str) or not text.lstrip().startswith("{"):
+            raise SettingError(
+                "conform and model make a model, and Model.load(PATH) reads its file; Model was "
+                f"given {text!r:.100}"
+            )
+        super().__init__(text)
+
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Model:
         """Read a model file, as ``reachtube conform --out`` or `save` wrote it.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Returns
+        -------
+        Model
 
         Raises
         ------
@@ -50,10 +67,22 @@ class Model(Record):
         return cls(text)
 
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        """Write the model file. A file that exists is replaced with ``force=True`` only.
+        """Write the model file, whole or not at all.
 
         The bounds of a calibrated model count the other models in the folder that some of the same
         recordings calibrated, as the command ``conform`` does.
+
+        Parameters
+        ----------
+        path
+            The file, in JSON; its folder is made if it does not exist.
+        force
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        ReachtubeError
+            If the file exists and ``force`` is false, or cannot be written.
         """
         text = self._text
         if self._content.get("calibration") is not None:
@@ -66,7 +95,22 @@ class Model(Record):
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Model:
-        """Return the model of a model file's bytes."""
+        """Return the model of a model file's bytes.
+
+        Parameters
+        ----------
+        data
+            The bytes, as `to_bytes` returns them or a model file has them.
+
+        Returns
+        -------
+        Model
+
+        Raises
+        ------
+        ModelFileError
+            For other bytes, bytes of another version, or bytes that were changed.
+        """
         try:
             text = data.decode()
         except UnicodeDecodeError as error:
@@ -199,7 +243,29 @@ class Model(Record):
         max_gap: float | None = None,
         progress: Progress = None,
     ) -> Check:
-        """Check whether the model encloses other recordings, as the function `check` does."""
+        """Check whether the model encloses other recordings, as the function `check` does.
+
+        Parameters
+        ----------
+        data
+            The recordings, as for the function `check`.
+        suites
+            Names of the suites to use; all where none are given.
+        notion
+            Directions in which recordings must lie in the set; the model's own where not given.
+        until
+            Samples later than this many seconds after the first are not used; the model's own limit
+            where it is not given.
+        max_gap
+            Longest time between two samples, s.
+        progress
+            As for `conform`.
+
+        Returns
+        -------
+        Check
+            A check that fails is returned with witnesses, not raised.
+        """
         from ._conform import check
 
         return check(
@@ -288,7 +354,7 @@ class Check(Record):
         return [str(note) for note in self._content["notes"]]
 
     def to_pandas(self) -> Any:
-        """Return one row for each suite."""
+        """Return a pandas DataFrame with one row for each suite."""
         import pandas
 
         rows = [

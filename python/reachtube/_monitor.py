@@ -13,6 +13,7 @@ from ._arrays import Array, frozen, numbers, real
 from ._findings import Finding, findings_of
 from ._model import text_of
 from ._recordings import source
+from .errors import SettingError
 
 if TYPE_CHECKING:
     from ._model import Model
@@ -73,6 +74,8 @@ class Monitor:
     __slots__ = ("_native",)
 
     def __init__(self, native: _reachtube.Monitor) -> None:
+        if not isinstance(native, _reachtube.Monitor):
+            raise SettingError("monitor(model, step=SECONDS) makes a monitor")
         self._native = native
 
     def push(
@@ -89,11 +92,16 @@ class Monitor:
         t
             Time of a sample, or K times, s.
         q
-            Positions, n or K x n.
+            Positions, n or K x n, rad (m for prismatic joints).
         qd
-            Velocities, n or K x n.
+            Velocities, n or K x n, rad/s (m/s for prismatic joints).
         tau
-            Torques of the model's kind, n or K x n.
+            Torques of the model's kind, n or K x n, N m (N for prismatic joints).
+
+        Returns
+        -------
+        list of Leave
+            Empty if every value is in the sets.
 
         Raises
         ------
@@ -108,7 +116,13 @@ class Monitor:
         return [Leave(*left) for left in self._native.push(times, *parts.values())]
 
     def finish(self) -> list[Leave]:
-        """End a recording: judge what waits for later samples, and begin anew at any time."""
+        """End a recording: judge what waits for later samples, and begin anew at any time.
+
+        Returns
+        -------
+        list of Leave
+            The values outside that `push` has not returned.
+        """
         return [Leave(*left) for left in self._native.finish()]
 
     @property
@@ -210,6 +224,10 @@ def monitor(
     healthy
         At least two recordings of healthy motion, as samples are given: the monitor raises an
         alarm, too, for a sudden torque, a drag or a payload outside its range in them.
+
+    Returns
+    -------
+    Monitor
 
     Examples
     --------

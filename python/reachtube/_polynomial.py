@@ -22,6 +22,12 @@ class Polynomial:
     Coefficients are double-precision numbers. Sums and products of them are rounded as Python
     rounds them: the polynomial that results is what is enclosed.
 
+    Parameters
+    ----------
+    terms
+        The coefficient of each monomial, as `Polynomial.terms` returns them; `variables` makes
+        polynomials without it.
+
     Examples
     --------
     >>> import reachtube as rt
@@ -42,7 +48,22 @@ class Polynomial:
 
     @staticmethod
     def of(value: Polynomial | Number) -> Polynomial:
-        """Return a polynomial; a number is a constant one."""
+        """Return a polynomial; a number is a constant one.
+
+        Parameters
+        ----------
+        value
+            A polynomial or a number.
+
+        Returns
+        -------
+        Polynomial
+
+        Raises
+        ------
+        SettingError
+            For anything else.
+        """
         if isinstance(value, Polynomial):
             return value
         try:
@@ -119,7 +140,16 @@ class Polynomial:
 
 
 def variables(names: str) -> tuple[Polynomial, ...]:
-    """Return one polynomial for each name, separated by spaces.
+    """Return one polynomial for each name.
+
+    Parameters
+    ----------
+    names
+        Names of variables, separated by spaces.
+
+    Returns
+    -------
+    tuple of Polynomial
 
     Examples
     --------
@@ -137,12 +167,42 @@ def _angle(polynomial: Polynomial, kind: str) -> Polynomial:
 
 
 def sin(angle: Polynomial) -> Polynomial:
-    """Return the sine of a state, rad."""
+    """Return the sine of a state.
+
+    Parameters
+    ----------
+    angle
+        A single variable, rad.
+
+    Returns
+    -------
+    Polynomial
+
+    Raises
+    ------
+    SettingError
+        For a polynomial that is not a single variable.
+    """
     return _angle(angle, "sin")
 
 
 def cos(angle: Polynomial) -> Polynomial:
-    """Return the cosine of a state, rad."""
+    """Return the cosine of a state.
+
+    Parameters
+    ----------
+    angle
+        A single variable, rad.
+
+    Returns
+    -------
+    Polynomial
+
+    Raises
+    ------
+    SettingError
+        For a polynomial that is not a single variable.
+    """
     return _angle(angle, "cos")
 
 

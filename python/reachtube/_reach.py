@@ -70,14 +70,26 @@ class ReachableSet(Values):
         return int(self.nominal.shape[1]) // 2
 
     def contains(self, states: Array) -> npt.NDArray[np.bool_]:
-        """Return for states of shape (K, 2n) at the samples whether each is within the bounds.
+        """Return which states are within the bounds at the samples.
 
         It compares numbers as they are; `check` is what proves enclosure.
+
+        Parameters
+        ----------
+        states : array of shape (K, 2n)
+            States at the samples, q then q̇, in the units of `units`.
+
+        Returns
+        -------
+        array of bool of shape (K, 2n)
         """
         return (self.lower <= states) & (states <= self.upper)
 
     def to_pandas(self) -> Any:
-        """Return one row for each sample: t, then lower, nominal and upper of each state."""
+        """Return a pandas DataFrame with one row for each sample.
+
+        The columns are t, then lower, nominal and upper of each state.
+        """
         import pandas
 
         n = self.joints

@@ -43,6 +43,15 @@ class Record:
     def from_bytes(cls: type[Own], data: bytes) -> Own:
         """Return the result that `to_bytes` wrote.
 
+        Parameters
+        ----------
+        data
+            The bytes, as `to_bytes` returns them.
+
+        Returns
+        -------
+        object of this class
+
         Raises
         ------
         ModelFileError

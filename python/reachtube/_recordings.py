@@ -256,10 +256,19 @@ class Recordings:
     def open(cls, folder: str | PathLike[str]) -> Recordings:
         """Open a folder with ``runs.csv`` and its recordings, which are read when they are used.
 
+        Parameters
+        ----------
+        folder
+            The folder.
+
+        Returns
+        -------
+        Recordings
+
         Raises
         ------
         DefectsError
-            Where the index has defects.
+            If the index has defects.
         """
         data = cls.__new__(cls)
         data._set(_reachtube.Source.open(fspath(folder)), fspath(folder))
@@ -285,7 +294,19 @@ class Recordings:
         return self._native.simulated()
 
     def inspect(self, *, max_gap: float | None = None) -> dict[str, Any] | None:
-        """Read all recordings of a folder and return a summary; ``None`` for runs in memory."""
+        """Read all recordings of a folder and summarise them.
+
+        Parameters
+        ----------
+        max_gap
+            Longest time between two samples, s; by default 1.9 times the usual sample time, and 10
+            times if sample times jitter.
+
+        Returns
+        -------
+        dict or None
+            What ``reachtube inspect --json`` prints; ``None`` for runs in memory.
+        """
         text = self._native.inspection(max_gap)
         return None if text is None else dict(json.loads(text))
 

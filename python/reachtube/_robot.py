@@ -50,6 +50,11 @@ class Robot:
     __slots__ = ("_description", "_native", "_source")
 
     def __init__(self, native: _reachtube.Robot) -> None:
+        if not isinstance(native, _reachtube.Robot):
+            raise SettingError(
+                "Robot.load(PATH) reads a robot file, a URDF or an embedded robot, and "
+                f"Robot.from_dict a description; Robot was given {native!r:.100}"
+            )
         self._native = native
         # What a file of choices says of the robot.
         self._source: dict[str, Any] = {}
@@ -72,6 +77,10 @@ class Robot:
             ``"lwa4p"``, or the path of a file.
         lock
             Joints that are held at a position, in rad or m.
+
+        Returns
+        -------
+        Robot
 
         Raises
         ------
@@ -105,6 +114,10 @@ class Robot:
         lock
             Joints that are held at a position, in rad or m.
 
+        Returns
+        -------
+        Robot
+
         Raises
         ------
         SettingError
@@ -125,12 +138,46 @@ class Robot:
 
     @classmethod
     def from_toml(cls, text: str, origin: str = "text") -> Robot:
-        """Read the text of a robot file; errors name it `origin`."""
+        """Read the text of a robot file.
+
+        Parameters
+        ----------
+        text
+            The text, in TOML.
+        origin
+            The name of the text in errors.
+
+        Returns
+        -------
+        Robot
+
+        Raises
+        ------
+        ReachtubeError
+            With origin, line, joint and remedy.
+        """
         return cls(_reachtube.Robot.from_toml(text, origin))
 
     @classmethod
     def from_dict(cls, description: Mapping[str, Any]) -> Robot:
-        """Make a robot of its description, as `to_dict` returns it."""
+        """Make a robot of its description.
+
+        Parameters
+        ----------
+        description
+            The description, as `to_dict` returns it.
+
+        Returns
+        -------
+        Robot
+
+        Raises
+        ------
+        SettingError
+            For a description that has no form of a robot.
+        ReachtubeError
+            For values that no robot has, with joint and remedy.
+        """
         if not isinstance(description, Mapping):
             raise SettingError(f"the description is of type {type(description).__name__}")
         try:
@@ -149,7 +196,20 @@ class Robot:
         return description
 
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        """Write a robot file. A file that exists is replaced with ``force=True`` only."""
+        """Write a robot file, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file, in TOML; its folder is made if it does not exist.
+        force
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        ReachtubeError
+            If the file exists and ``force`` is false, or cannot be written.
+        """
         write_new(Path(path), self.to_toml(), force=force)
 
     @property
@@ -213,11 +273,12 @@ class Robot:
         Parameters
         ----------
         q : array of shape (..., n)
-            Positions.
+            Positions, rad.
 
         Returns
         -------
         array of shape (..., n, n)
+            Inertia, kg m² (kg for prismatic joints).
         """
         n = self.joints
         shape, [q] = batch(n, q=q)

@@ -145,7 +145,7 @@ class StopStudy(Answer):
         return [stop(row) for row in self._answer["recorded"]]
 
     def to_pandas(self) -> Any:
-        """Return one row for each suite and joint."""
+        """Return a pandas DataFrame with one row for each suite and joint."""
         import pandas
 
         return pandas.DataFrame([asdict(row) for row in self.stops])

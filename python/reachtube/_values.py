@@ -59,6 +59,15 @@ class Values:
     def from_bytes(cls: type[Own], data: bytes) -> Own:
         """Return the result that `to_bytes` wrote.
 
+        Parameters
+        ----------
+        data
+            The bytes, as `to_bytes` returns them.
+
+        Returns
+        -------
+        object of this class
+
         Raises
         ------
         ModelFileError

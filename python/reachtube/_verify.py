@@ -164,7 +164,7 @@ class Verification(Answer):
         return {name: text for name, text in self._files.items() if name.endswith(".svg")}
 
     def to_pandas(self) -> Any:
-        """Return one row for each motion, link and obstacle."""
+        """Return a pandas DataFrame with one row for each motion, link and obstacle."""
         import pandas
 
         rows = [

@@ -36,6 +36,10 @@ def reachable_set(
         Whether the nominal motion is taken off.
     figure
         The figure to draw in; a new one where none is given.
+
+    Returns
+    -------
+    Figure
     """
     import matplotlib.pyplot as plt
 
@@ -68,7 +72,25 @@ def reachable_set(
 def flowpipe(
     lower: Any, upper: Any, x: int = 0, y: int = 1, *, axis: Axes | None = None
 ) -> Axes:
-    """Draw boxes of a flowpipe, bounds of shape (K, N), in the plane of two states."""
+    """Draw boxes of a flowpipe in the plane of two states.
+
+    Parameters
+    ----------
+    lower : array of shape (K, N)
+        Lower bounds, such as ``step_lower`` of a `Flowpipe`.
+    upper : array of shape (K, N)
+        Upper bounds.
+    x
+        The state along the horizontal axis, from 0.
+    y
+        The state along the vertical axis, from 0.
+    axis
+        The axes to draw in; new ones where none are given.
+
+    Returns
+    -------
+    Axes
+    """
     import matplotlib.pyplot as plt
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Rectangle
