@@ -9,7 +9,7 @@ recordings, `excite` the motions for it, `abstract` models of any order, and `fl
 sets of your own system.
 """
 
-from . import errors, fleet, io
+from . import errors, fleet, io, plot
 from ._abstraction import Abstraction, abstract
 from ._box import Box
 from ._built import BuiltModel, Choice, HeldOut, HorizonWidths, JointRow, model
@@ -100,6 +100,7 @@ __all__ = [
     "io",
     "model",
     "monitor",
+    "plot",
     "prepare",
     "reach",
     "report",

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, batch, numbers, whole
+from ._arrays import Array, batch, finite, numbers, whole
 from ._files import write_new
 from ._progress import Progress, shown
 from ._renamed import renamed
@@ -219,11 +219,13 @@ def abstract(
     ReachtubeError
         Where the mass matrix is singular, or polynomials of this order do not fit.
     """
-    given = [] if expansion is None else numbers("expansion", expansion).ravel().tolist()
-    radii = [] if box is None else numbers("box", box).ravel().tolist()
+    given = [] if expansion is None else finite("expansion", expansion)
+    radii = [] if box is None else finite("box", box)
     kind = whole("paper_model", paper_model, 1, 3)
     power = whole("order", order, 1, MOST_ORDER)
     most = None if most_boxes is None else whole("most_boxes", most_boxes, 1)
+    if most is not None and not radii:
+        raise SettingError("most_boxes divides the box; give box too")
     with shown(progress, "abstract") as tell:
         return Abstraction(
             _reachtube.Abstraction(native_of(robot), kind, power, given, radii, most, tell)

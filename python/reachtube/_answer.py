@@ -8,6 +8,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from ._arrays import json_of
 from ._files import check_new, write_new
 from ._findings import Finding
 from ._record import Record
@@ -63,10 +64,7 @@ def infinite(value: float | None) -> float:
 def toml_of(what: str, given: Toml) -> tuple[str, str | None]:
     """Return the text of a TOML file and its path, or keys as JSON and ``None``."""
     if isinstance(given, Mapping):
-        try:
-            return json.dumps(dict(given), default=_plain), None
-        except (TypeError, ValueError) as error:
-            raise SettingError(f"{what}: {error}") from None
+        return json_of(what, dict(given)), None
     if not isinstance(given, (str, PathLike)):
         raise SettingError(
             f"{what} is of type {type(given).__name__}; give the path of a TOML file, or its keys"
@@ -75,13 +73,3 @@ def toml_of(what: str, given: Toml) -> tuple[str, str | None]:
         return Path(given).read_text(encoding="utf-8"), fspath(given)
     except (OSError, UnicodeDecodeError) as error:
         raise ReachtubeError(f"{given}: {error}; docs/verify.md describes the file") from None
-
-
-def _plain(value: object) -> object:
-    """Return arrays as lists, and paths as text."""
-    if isinstance(value, PathLike):
-        return fspath(value)
-    tolist = getattr(value, "tolist", None)
-    if tolist is None:
-        raise TypeError(f"{value!r} is of type {type(value).__name__}")
-    return tolist()

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import operator
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
@@ -79,6 +81,53 @@ def real(name: str, value: float) -> float:
     if np.ndim(value) > 0:
         raise SettingError(f"{name} has the shape {array.shape}; give one number")
     return float(array[0])
+
+
+def above_zero(name: str, value: float, unit: str = "s") -> float:
+    """Return one finite number above 0."""
+    number = real(name, value)
+    if not 0 < number < float("inf"):
+        raise SettingError(f"{name} is {number} {unit}; give a finite number above 0")
+    return number
+
+
+def check_choice(name: str, value: object, options: Sequence[str]) -> None:
+    """Check that an argument is one of some words."""
+    if value not in options:
+        words = " or ".join(repr(option) for option in options)
+        raise SettingError(f"{name} is {value!r}; give {words}")
+
+
+def finite(name: str, values: npt.ArrayLike) -> list[float]:
+    """Return finite numbers as a list."""
+    array = numbers(name, values).ravel()
+    if not np.isfinite(array).all():
+        raise SettingError(f"{name} is {array.tolist()}; give finite numbers")
+    return [float(value) for value in array]
+
+
+def json_of(name: str, values: object) -> str:
+    """Return the JSON of what a user gives, in which arrays are lists and paths are text."""
+    try:
+        return json.dumps(values, default=_plain, allow_nan=False)
+    except (TypeError, ValueError) as error:
+        raise SettingError(f"{name}: {error}") from None
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, PathLike):
+        return fspath(value)
+    tolist = getattr(value, "tolist", None)
+    if tolist is None:
+        raise TypeError(f"{value!r} is of type {type(value).__name__}")
+    return tolist()
+
+
+def mapping(name: str, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a new dictionary of what a user gives by name."""
+    if not isinstance(values, Mapping):
+        raise SettingError(f"{name} is of type {type(values).__name__}; give a dictionary")
+    return dict(values)
 
 
 def label(name: str, value: str | None) -> str | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ._arrays import Array, array_of
+from ._arrays import Array, array_of, numbers
 from ._values import Values
 
 
@@ -23,6 +23,12 @@ class Box(Values):
 
     centre: Array
     radius: Array
+
+    def __post_init__(self) -> None:
+        for name in ("centre", "radius"):
+            # A list becomes an array.
+            object.__setattr__(self, name, numbers(name, getattr(self, name)))
+        super().__post_init__()
 
     @property
     def lower(self) -> Array:

@@ -6,16 +6,15 @@ import json
 import logging
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
 import numpy.typing as npt
 
 from . import _html, _reachtube
-from ._arrays import names, numbers, real
+from ._arrays import above_zero, finite, json_of, mapping, names, real
 from ._files import check_new, write_new
 from ._findings import Finding
 from ._logs import Logs, native_of_logs
@@ -178,7 +177,7 @@ class BuiltModel(Record):
         """Return a pandas DataFrame with one row for each joint."""
         import pandas
 
-        return pandas.DataFrame(self._answer["joints"])
+        return pandas.DataFrame([asdict(row) for row in self.joints])
 
     def save(self, folder: str | PathLike[str], *, force: bool = False) -> None:
         """Write what ``reachtube model --out`` writes.
@@ -312,16 +311,19 @@ def model(
     if fit is not None:
         given["fit"] = names(fit)
     if columns is not None:
-        given["columns"] = dict(columns)
+        given["columns"] = mapping("columns", columns)
     log_table = {"topic": names(topic), "joints": names(joints), "marker": marker, "time": time}
     if any(log_table.values()):
         given["log"] = {key: value for key, value in log_table.items() if value}
     given |= robot._source if isinstance(robot, Robot) else {}
     paths, runs = ([], None) if data is None else native_of_logs(data)
+    if not isinstance(settings, (str, PathLike, type(None))):
+        kind = type(settings).__name__
+        raise SettingError(f"settings is of type {kind}; give the path of a file of choices")
     file = None if settings is None else fspath(settings)
     with shown(progress, "model") as tell:
         text, notes = _reachtube.model(
-            native_of(robot), paths, runs, file, json.dumps(given), tell
+            native_of(robot), paths, runs, file, json_of("choices", given), tell
         )
     found = BuiltModel(text)
     for note in [*notes, *(f"{own.key}: {own.value} ({own.reason})" for own in found.choices)]:
@@ -343,16 +345,11 @@ def _numbers(
     given: dict[str, Any] = {}
     for name, value in {"horizon": horizon, "max_gap": max_gap}.items():
         if value is not None:
-            if not 0 < real(name, value) < float("inf"):
-                raise SettingError(f"{name} is {value} s; it must be above 0")
-            given[name.replace("_", "-")] = real(name, value)
+            given[name.replace("_", "-")] = above_zero(name, value)
     if pull is not None:
         if not 0 <= real("pull", pull) <= 1:
             raise SettingError(f"pull is {pull}; give a weight from 0 to 1")
         given["pull"] = real("pull", pull)
     if gains is not None:
-        factors = numbers("gains", gains).ravel()
-        if not np.isfinite(factors).all():
-            raise SettingError(f"gains is {factors.tolist()}; give finite numbers")
-        given["gains"] = factors.tolist()
+        given["gains"] = finite("gains", gains)
     return given

@@ -7,10 +7,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from .errors import ModelFileError
+from .errors import ModelFileError, SettingError
 
 #: Version of these bytes.
 VERSION = 1
+
+
+def checked(data: bytes) -> bytes:
+    """Return bytes, and refuse anything else."""
+    if not isinstance(data, (bytes, bytearray, memoryview)):
+        raise SettingError(f"data is of type {type(data).__name__}; give bytes")
+    return bytes(data)
 
 
 def with_head(kind: type, content: bytes, **more: Any) -> bytes:
@@ -27,7 +34,7 @@ def without_head(kind: type, data: bytes) -> tuple[dict[str, Any], bytes]:
     ModelFileError
         For bytes of another kind or version.
     """
-    line, _, content = data.partition(b"\n")
+    line, _, content = checked(data).partition(b"\n")
     try:
         head = json.loads(line)
         found = (head["format"], head["version"])

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _reachtube
 from ._abstraction import Abstraction
-from ._arrays import names, real
+from ._arrays import above_zero, names, real
 from ._logs import Logs, native_of_logs, source_for
 from ._model import Check, Model, text_of
 from ._progress import Progress, shown
@@ -179,16 +179,15 @@ def _cut(
     """Return recordings, cut into windows where there is a horizon, what was done, and notes."""
     if horizon is None:
         return source(data), None, []  # type: ignore[arg-type]
-    if not 0 < real("horizon", horizon) < float("inf"):
-        raise SettingError(f"horizon is {horizon} s; it must be above 0")
+    length = above_zero("horizon", horizon)
     if until is not None:
         raise SettingError("horizon and until exclude each other: windows end at the horizon")
     return _reachtube.cut(
         robot._native if isinstance(robot, Robot) else None,
         robot._native if isinstance(robot, Abstraction) else None,
         torque,
-        real("horizon", horizon),
-        None if max_gap is None else real("max_gap", max_gap),
+        length,
+        None if max_gap is None else above_zero("max_gap", max_gap),
         names(calibrate),
         *native_of_logs(data),
     )
@@ -245,7 +244,7 @@ def check(
         return Check(
             _reachtube.check(
                 text_of(model),
-                source_for(model, data, None if max_gap is None else real("max_gap", max_gap)),
+                source_for(model, data, max_gap),
                 names(suites),
                 differing(notion, until, max_gap),
                 tell,

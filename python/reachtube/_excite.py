@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers, real, whole
+from ._arrays import Array, above_zero, check_choice, frozen, numbers, real, whole
 from ._robot import Robot, native_of
 from ._values import Values
 from .errors import SettingError
@@ -116,17 +116,13 @@ def excite(
     SettingError
         An argument that is not possible.
     """
-    period, rate = real("period", period), real("rate", rate)
-    for name, value in {"period": period, "rate": rate}.items():
-        if not 0 < value < float("inf"):
-            raise SettingError(f"{name} is {value}; give a finite number above 0")
+    period, rate = above_zero("period", period), above_zero("rate", rate, "Hz")
     if period * rate > MOST_SAMPLES:
         raise SettingError(
             f"a period of {period} s at a rate of {rate} per second has {period * rate:g} "
             f"samples; choose period and rate so that there are {MOST_SAMPLES} at most"
         )
-    if criterion not in ("determinant", "condition"):
-        raise SettingError(f"criterion is {criterion!r}; give 'determinant' or 'condition'")
+    check_choice("criterion", criterion, ("determinant", "condition"))
     limits = numbers("acceleration", acceleration).ravel().tolist()
     noise = numbers("torque_noise", torque_noise).ravel().tolist()
     if len(noise) == 1:

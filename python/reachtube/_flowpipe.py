@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers, whole
+from ._arrays import Array, check_choice, frozen, mapping, numbers, whole
 from ._polynomial import Number, Polynomial, variable_name
 from ._values import Values
 from .errors import SettingError
@@ -22,6 +22,9 @@ MOST_VERTEX_VARIABLES, MOST_PIECES = 24, 1_000_000
 
 #: Exponents are bytes, and so is the order of Taylor models.
 MOST_EXPONENT = 255
+
+#: The order of Taylor models where none is given.
+DEFAULT_ORDER = 4
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -147,11 +150,11 @@ def _terms(
     return angles, terms
 
 
-def _names(mapping: Mapping[Any, Any]) -> dict[str, Any]:
+def _names(argument: str, given: Mapping[Any, Any]) -> dict[str, Any]:
     """Return a mapping whose keys are names of variables."""
     named = {}
-    for key, value in mapping.items():
-        name = key if isinstance(key, str) else variable_name(key)
+    for key, value in mapping(argument, given).items():
+        name = key if isinstance(key, str) else variable_name(Polynomial.of(key))
         if name is None:
             raise SettingError(f"{key} is no variable")
         named[name] = value
@@ -186,7 +189,7 @@ def flowpipe(
     inputs: Mapping[Any, npt.ArrayLike] | None = None,
     measured: Mapping[Any, npt.ArrayLike] | None = None,
     method: Literal["linearisation", "taylor"] | None = None,
-    taylor_order: int = 4,
+    taylor_order: int | None = None,
     vertex_variables: int | None = None,
     order: int | None = None,
     pieces: Mapping[Any, int] | None = None,
@@ -212,9 +215,10 @@ def flowpipe(
         state, for large initial sets. If neither it nor one of the last three settings is given,
         method, order, parts of each step and pieces are found by trial; the result names them.
     taylor_order
-        The order of the Taylor models.
+        The order of the Taylor models, for ``method="taylor"`` only; 4 if it is not given.
     vertex_variables
-        Number of variables over whose vertices linearisation errors are bounded.
+        Number of variables over whose vertices linearisation errors are bounded; not for Taylor
+        models.
     order
         The most generators of a zonotope, in multiples of the states.
     pieces
@@ -239,14 +243,19 @@ def flowpipe(
     >>> pipe.is_reached, pipe.choice
     (True, 'linearisation')
     """
-    named, sets = _names(rates), _names(inputs or {})
+    named, sets = _names("rates", rates), _names("inputs", inputs or {})
+    starts = _names("initial", initial)
+    if unknown := sorted(set(starts) - set(named)):
+        raise SettingError(f"initial: {', '.join(unknown)} is no state ({', '.join(named)})")
+    if both := sorted(set(sets) & set(named)):
+        raise SettingError(f"inputs: {', '.join(both)} is a state, which has a rate")
     angles, terms = _terms(named, list(sets))
     times = numbers("t", t)
     if times.ndim != 1 or len(times) == 0:
         raise SettingError(f"t has the shape {times.shape}; give one axis of times")
-    centre, radius = _sides(_names(initial), list(named))
+    centre, radius = _sides(starts, list(named))
     input_centre, input_radius = _sides(sets, list(sets))
-    along = _names(measured or {})
+    along = _names("measured", measured or {})
     if unknown := sorted(set(along) - set(sets)):
         raise SettingError(f"measured: {', '.join(unknown)} is no input; give its set in inputs")
     columns = [
@@ -255,9 +264,17 @@ def flowpipe(
     ]
     rows = np.array(columns, dtype=np.float64).T.reshape(len(times), len(sets))
     automatic = method is None and vertex_variables is None and order is None and not pieces
-    if method not in (None, "linearisation", "taylor"):
-        raise SettingError(f"method is {method!r}; give 'linearisation' or 'taylor'")
-    parts = _names(pieces or {})
+    if method is not None:
+        check_choice("method", method, ("linearisation", "taylor"))
+    if taylor_order is not None and method != "taylor":
+        raise SettingError("taylor_order is of Taylor models; give method='taylor' too")
+    if vertex_variables is not None and method == "taylor":
+        raise SettingError("vertex_variables is of linearisation; give method='linearisation'")
+    taylor = None
+    if method == "taylor":
+        given = DEFAULT_ORDER if taylor_order is None else taylor_order
+        taylor = whole("taylor_order", given, 1, MOST_EXPONENT)
+    parts = _names("pieces", pieces or {})
     if unknown := sorted(set(parts) - set(named)):
         raise SettingError(f"pieces: {', '.join(unknown)} is no state ({', '.join(named)})")
     cut = [whole(f"pieces of {name}", parts.get(name, 1), 1) for name in named] if parts else []
@@ -277,7 +294,7 @@ def flowpipe(
         input_centre,
         input_radius,
         automatic,
-        whole("taylor_order", taylor_order, 1, MOST_EXPONENT) if method == "taylor" else None,
+        taylor,
         vertices,
         None if order is None else whole("order", order, 1),
         cut,

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
 from . import _reachtube
+from ._arrays import check_choice, json_of
 from ._files import write_new
 from ._progress import Progress, shown
 from ._record import Record
@@ -226,11 +227,10 @@ def identify(
         if not isinstance(section or {}, Mapping):
             raise SettingError(f"{name} is {section!r}; give settings by their names")
     own = dict(model or {})
-    if torque not in (None, "motor", "link"):
-        raise SettingError(f"torque is {torque!r}; give \"motor\" or \"link\"")
     if torque is not None:
+        check_choice("torque", torque, ("motor", "link"))
         own["motor_inertia"] = torque == "motor"
-    given = json.dumps({"prepare": dict(prepare or {}), "model": own})
+    given = json_of("settings", {"prepare": dict(prepare or {}), "model": own})
     here = Path.cwd()
     recorded = []
     for logs in (rest, friction, dynamic, validate):

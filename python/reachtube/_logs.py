@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 from . import _reachtube
+from ._arrays import above_zero
 from ._recordings import Recordings, Run, source
 from .errors import SettingError
 
@@ -52,5 +53,6 @@ def source_for(model: Model, data: Logs, max_gap: float | None = None) -> _reach
     Logs for a model that `model` made are prepared as its own were.
     """
     if "preparation" in model._content:
-        return _reachtube.prepared(model._text, max_gap, *native_of_logs(data))
+        gap = None if max_gap is None else above_zero("max_gap", max_gap)
+        return _reachtube.prepared(model._text, gap, *native_of_logs(data))
     return source(data)  # type: ignore[arg-type]

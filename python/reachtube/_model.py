@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from . import _html, _reachtube
 from ._arrays import Array, array_of
 from ._box import Box
+from ._bytes import checked
 from ._files import write_new
 from ._findings import Finding, Report, findings_of
 from ._record import Record
@@ -112,7 +113,7 @@ class Model(Record):
             For other bytes, bytes of another version, or bytes that were changed.
         """
         try:
-            text = data.decode()
+            text = checked(data).decode()
         except UnicodeDecodeError as error:
             raise ModelFileError(f"these bytes are no model file: {error}") from None
         _reachtube.check_model(text, "bytes")

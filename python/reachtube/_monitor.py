@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, numbers, real
+from ._arrays import Array, above_zero, frozen, numbers
 from ._findings import Finding, findings_of
 from ._model import text_of
 from ._recordings import source
@@ -237,11 +237,11 @@ def monitor(
     """
 
     def optional(name: str, value: float | None) -> float | None:
-        return None if value is None else real(name, value)
+        return None if value is None else above_zero(name, value)
 
     native = _reachtube.Monitor(
         text_of(model),
-        real("step", step),
+        above_zero("step", step),
         optional("horizon", horizon),
         optional("every", every),
         optional("max_gap", max_gap),

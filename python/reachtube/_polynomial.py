@@ -80,6 +80,9 @@ class Polynomial:
 
     __radd__ = __add__
 
+    def __pos__(self) -> Polynomial:
+        return self
+
     def __neg__(self) -> Polynomial:
         return Polynomial({monomial: -value for monomial, value in self._terms.items()})
 
@@ -103,6 +106,8 @@ class Polynomial:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Number) -> Polynomial:
+        if isinstance(other, Polynomial):
+            return NotImplemented
         return Polynomial({monomial: value / other for monomial, value in self._terms.items()})
 
     def __pow__(self, exponent: int) -> Polynomial:
@@ -145,7 +150,7 @@ def variables(names: str) -> tuple[Polynomial, ...]:
     Parameters
     ----------
     names
-        Names of variables, separated by spaces.
+        Names of variables, separated by spaces or commas.
 
     Returns
     -------
@@ -156,11 +161,14 @@ def variables(names: str) -> tuple[Polynomial, ...]:
     >>> import reachtube as rt
     >>> q, qd, u = rt.variables("q qd u")
     """
-    return tuple(Polynomial({(((name, "x"), 1),): 1.0}) for name in names.split())
+    if not isinstance(names, str):
+        raise SettingError(f"names is {names!r}; give one text, such as \"x y\"")
+    each = names.replace(",", " ").split()
+    return tuple(Polynomial({(((name, "x"), 1),): 1.0}) for name in each)
 
 
 def _angle(polynomial: Polynomial, kind: str) -> Polynomial:
-    name = variable_name(polynomial)
+    name = variable_name(Polynomial.of(polynomial))
     if name is None:
         raise SettingError(f"{kind} of {polynomial}: give a single variable")
     return Polynomial({(((name, kind), 1),): 1.0})

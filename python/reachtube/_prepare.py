@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import logging
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,11 +9,10 @@ from typing import Any
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import names, numbers, real
+from ._arrays import above_zero, finite, json_of, mapping, names
 from ._logs import Logs, native_of_logs
 from ._recordings import Recordings
 from ._robot import Robot, native_of
-from .errors import SettingError
 
 log = logging.getLogger("reachtube")
 
@@ -95,25 +93,24 @@ def prepare(
     (5, ['wave_w01', 'wave_w02'])
     """
     settings: dict[str, Any] = {"joints": names(joints)}
-    limits = {"cut_off": cut_off, "max_gap": max_gap, "window": window}
-    for name, value in limits.items():
-        if value is not None and not 0 < real(name, value) < float("inf"):
-            raise SettingError(f"{name} is {value}; it must be above 0")
-    settings |= {name: real(name, value) for name, value in limits.items() if value is not None}
-    settings.pop("window", None)
+    if cut_off is not None:
+        settings["cut_off"] = above_zero("cut_off", cut_off, "Hz")
+    if max_gap is not None:
+        settings["max_gap"] = above_zero("max_gap", max_gap)
+    length = None if window is None else above_zero("window", window)
     if gains is not None:
-        settings["gains"] = numbers("gains", gains).ravel().tolist()
+        settings["gains"] = finite("gains", gains)
     if torque is not None:
         settings["torque"] = torque
     if columns is not None:
-        settings["columns"] = dict(columns)
+        settings["columns"] = mapping("columns", columns)
     paths, runs = native_of_logs(data)
     native, used, changes = _reachtube.prepare(
         native_of(robot),
         paths,
         runs,
-        json.dumps(settings),
-        (None if window is None else real("window", window), repeats, compensate),
+        json_of("settings", settings),
+        (length, repeats, compensate),
     )
     log.info("the cut-off frequency is %g Hz", used)
     for change in changes:

@@ -13,13 +13,14 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, names
+from ._arrays import Array, check_choice, frozen, names, numbers
 from ._files import check_new
 from ._logs import Logs, source_for
 from ._model import Model, text_of
 from ._progress import Progress, shown
 from ._settings import Data, differing
 from ._values import Values
+from .errors import SettingError
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,7 +70,7 @@ class ReachableSet(Values):
         """The number of joints n."""
         return int(self.nominal.shape[1]) // 2
 
-    def contains(self, states: Array) -> npt.NDArray[np.bool_]:
+    def contains(self, states: npt.ArrayLike) -> npt.NDArray[np.bool_]:
         """Return which states are within the bounds at the samples.
 
         It compares numbers as they are; `check` is what proves enclosure.
@@ -83,7 +84,14 @@ class ReachableSet(Values):
         -------
         array of bool of shape (K, 2n)
         """
-        return (self.lower <= states) & (states <= self.upper)
+        given = numbers("states", states)
+        if given.shape != self.lower.shape:
+            raise SettingError(
+                f"states has the shape {given.shape}, but {self.lower.shape} is needed: one row "
+                "for each sample, one column for each state"
+            )
+        inside: npt.NDArray[np.bool_] = (self.lower <= given) & (given <= self.upper)
+        return inside
 
     def to_pandas(self) -> Any:
         """Return a pandas DataFrame with one row for each sample.
@@ -141,7 +149,7 @@ def reach(
     with shown(progress, "reach") as tell:
         found = _reachtube.reach(
             text_of(model),
-            source_for(model, data),
+            source_for(model, data, max_gap),
             names(suites),
             differing(None, until, max_gap),
             tell,
@@ -204,13 +212,14 @@ def report(
     Path
         The page.
     """
+    check_choice("assets", assets, ("inside", "beside"))
     check_new(Path(folder) / "report.html", force=force)
     settings = differing(None, until, max_gap)
     with shown(progress, "report") as tell:
         return Path(
             _reachtube.report(
                 text_of(model),
-                source_for(model, data),
+                source_for(model, data, max_gap),
                 names(suites),
                 settings,
                 fspath(folder),

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _reachtube
-from ._arrays import Array, frozen, label, numbers, samples, whole
+from ._arrays import Array, above_zero, frozen, label, numbers, samples, whole
 from .errors import SettingError
 
 
@@ -307,7 +307,8 @@ class Recordings:
         dict or None
             What ``reachtube inspect --json`` prints; ``None`` for runs in memory.
         """
-        text = self._native.inspection(max_gap)
+        limit = None if max_gap is None else above_zero("max_gap", max_gap)
+        text = self._native.inspection(limit)
         return None if text is None else dict(json.loads(text))
 
     def __len__(self) -> int:
@@ -361,6 +362,8 @@ def source(data: Recordings | Run | Iterable[Run] | str | PathLike[str]) -> _rea
     """Return the native source of what a user gives as recordings."""
     if isinstance(data, (str, PathLike)):
         return Recordings.open(data)._native
-    if isinstance(data, Recordings):
-        return data._native
-    return Recordings([data] if isinstance(data, Run) else data)._native
+    if not isinstance(data, Recordings):
+        data = Recordings([data] if isinstance(data, Run) else data)
+    if len(data) == 0:
+        raise SettingError("there are no recordings; give at least one run")
+    return data._native

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._abstraction import Abstraction
-from ._arrays import names, numbers, real, whole
+from ._arrays import above_zero, finite, json_of, names, numbers, whole
 from ._recordings import Recordings, Run
 from ._robot import Robot, native_of
 from .errors import SettingError
@@ -39,10 +39,7 @@ def _radii(name: str, values: npt.ArrayLike, joints: int) -> list[float]:
 def _limits(until: float | None, max_gap: float | None) -> dict[str, float]:
     """Return the limits of time that are given."""
     limits = {"until": until, "max_gap": max_gap}
-    for name, value in limits.items():
-        if value is not None and not 0 < real(name, value) < float("inf"):
-            raise SettingError(f"{name} is {value} s; it must be above 0")
-    return {name: float(value) for name, value in limits.items() if value is not None}
+    return {name: above_zero(name, value) for name, value in limits.items() if value is not None}
 
 
 def differing(notion: Notion | None, until: float | None, max_gap: float | None) -> str:
@@ -77,7 +74,7 @@ def of_conformance(robot: Robot | Abstraction, *, torque: Torque, **given: Any) 
         kind = whole("paper_model", kind, 1, 3)
         settings["abstraction"] = {"model": kind, "order": whole("order", order, 1, 255)}
         if expansion is not None:
-            settings["expansion"] = numbers("expansion", expansion).ravel().tolist()
+            settings["expansion"] = finite("expansion", expansion)
     settings["calibrate"] = names(given.get("calibrate", ()))
     for name, key in [("weights", "given"), ("noise", "fixed")]:
         if not isinstance(given.get(name, ""), str):
@@ -86,10 +83,10 @@ def of_conformance(robot: Robot | Abstraction, *, torque: Torque, **given: Any) 
         settings["sensor_noise"] = _radii("sensor_noise", given["sensor_noise"], robot.joints)
     if explain is None:
         settings["explain"] = None
-    elif explain != "default":
-        both = numbers("explain", explain).ravel()
-        if both.size != 2:
+    elif not (isinstance(explain, str) and explain == "default"):
+        both = finite("explain", explain)
+        if len(both) != 2:
             raise SettingError(f"explain is {explain!r}; give two tolerances, rad and rad/s")
-        settings["explain"] = {"position": float(both[0]), "velocity": float(both[1])}
+        settings["explain"] = {"position": both[0], "velocity": both[1]}
     settings.update(limits)
-    return json.dumps(settings)
+    return json_of("settings", settings)

@@ -250,7 +250,7 @@ def stop(
         return StopStudy(
             _reachtube.stop(
                 text_of(model),
-                source_for(model, data),
+                source_for(model, data, max_gap),
                 names(suites),
                 differing(None, until, max_gap),
                 text,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import Array, numbers
+from ._arrays import Array, names, numbers
 from ._recordings import Run
 from .errors import Defect, DefectsError, ReachtubeError, SettingError
 
@@ -36,7 +36,8 @@ def run_of_columns(
         }
     else:
         prefixes = {"q": "position", "qd": "velocity", "tau": "effort"}
-        wanted = {part: [f"{p}.{name}" for name in joints] for part, p in prefixes.items()}
+        own = names(joints)
+        wanted = {part: [f"{p}.{name}" for name in own] for part, p in prefixes.items()}
     missing = [name for part in ("q", "qd", "tau") for name in wanted[part] if name not in columns]
     if "t" not in columns:
         missing.insert(0, "t")
@@ -46,8 +47,8 @@ def run_of_columns(
             f"{', '.join(columns)}"
         )
     parts: dict[str, Array] = {
-        part: np.column_stack([numbers(name, columns[name]) for name in own])
-        for part, own in wanted.items()
+        part: np.column_stack([numbers(name, columns[name]) for name in each])
+        for part, each in wanted.items()
     }
     times = numbers("t", columns["t"])
     warm = [name for j in range(len(wanted["q"])) if (name := f"temp{j + 1}") in columns]
@@ -117,10 +118,11 @@ def places_of(origin: str, found: Any, joints: Sequence[str]) -> list[int]:
         raise ReachtubeError(f"{origin}: it does not name its joints; leave joints= out, or add "
                              "an array joints with their names")
     known = [name.decode() if isinstance(name, bytes) else str(name) for name in np.ravel(found)]
-    missing = [name for name in joints if name not in known]
+    wanted = names(joints)
+    missing = [name for name in wanted if name not in known]
     if missing:
         raise ReachtubeError(
             f"{origin}: these joints are missing: {', '.join(missing)}; there are "
             f"{', '.join(known)}"
         )
-    return [known.index(name) for name in joints]
+    return [known.index(name) for name in wanted]

@@ -13,6 +13,7 @@ from ._answer import Answer, Toml, infinite, toml_of
 from ._logs import source_for
 from ._model import Model, text_of
 from ._progress import Progress, shown
+from .errors import SettingError
 
 
 @dataclass(frozen=True)
@@ -231,6 +232,9 @@ def verify(scenario: Toml, *, progress: Progress = None) -> Verification:
     >>> print(answer)  # doctest: +SKIP
     """
     in_memory = None
+    if isinstance(scenario, Mapping) and "data" not in scenario:
+        if isinstance(scenario.get("model"), Model):
+            raise SettingError("scenario has a model and no data; give the recordings as data")
     if isinstance(scenario, Mapping) and {"model", "data"} <= scenario.keys():
         model, data = scenario["model"], scenario["data"]
         model = model if isinstance(model, Model) else Model.load(model)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from . import _conform
 from ._abstraction import Abstraction
-from ._arrays import names, real
+from ._arrays import check_choice, names, real, whole
 from ._conform import told
 from ._jobs import Job, Part, fleet_of, fold_of, on_dask
 from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
@@ -24,7 +24,7 @@ from ._progress import Progress, shown
 from ._renamed import renamed
 from ._robot import Robot
 from ._settings import Group, Notion, Torque, among, differing, of_conformance
-from .errors import ReachtubeError, SettingError
+from .errors import ReachtubeError
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -43,8 +43,7 @@ def _parts(
     robots: Robots,
 ) -> list[Part]:
     """Return the recordings of each task."""
-    if size < 1:
-        raise SettingError(f"runs_per_task is {size}; give 1 or more")
+    size = whole("runs_per_task", size, 1)
     address, options = fspath(manifest), dict(storage or {})
     listed = list(enumerate(read_manifest(address, storage_options=options)))
     all_rows = in_order(of_robots(listed, robots, address))
@@ -151,6 +150,7 @@ def conform(
     for name in settings:
         if name not in known:
             raise TypeError(f"fleet.conform() has no argument {name!r}")
+    check_choice("on_defect", on_defect, ("raise", "report"))
     text = of_conformance(robot, torque=torque, **settings)
     if isinstance(robot, Abstraction):
         job = Job("abstraction", robot._native.to_json(), text)
@@ -225,6 +225,7 @@ def check(
     -------
     Check
     """
+    check_choice("on_defect", on_defect, ("raise", "report"))
     job = Job("model", text_of(model), differing(notion, until, max_gap))
     fleet_of(job).fold()
     parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)

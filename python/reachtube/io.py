@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from os import PathLike, fspath
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from . import _reachtube
-from ._arrays import Array, names
+from ._arrays import Array, above_zero, check_choice, names
 from ._recordings import Recordings, Run
 from ._tables import check_finite, places_of, run_of_arrays, run_of_columns
 from .errors import ReachtubeError, ReachtubeWarning
@@ -97,6 +97,9 @@ def bag(
     ReachtubeError
         A damaged file, with the byte; a joint that is not in the log, with the joints that are.
     """
+    check_choice("time", time, ("header", "log"))
+    slow = above_zero("rest_speed", rest_speed, "rad/s")
+    limit = None if max_gap is None else above_zero("max_gap", max_gap)
     files = [paths] if isinstance(paths, (str, PathLike)) else list(paths)
     found, notes, lost = _reachtube.read_log(
         [fspath(path) for path in files],
@@ -104,7 +107,7 @@ def bag(
         names(joints),
         time == "log",
         recover,
-        (marker, repeats, rest_speed, max_gap),
+        (marker, bool(repeats), slow, limit),
     )
     for note in notes:
         log.info(note)
@@ -298,10 +301,10 @@ def ros1(
 
 
 def _message(
-    origin: str, count: int, message: Any, joints: Iterable[str]
+    origin: str, count: int, message: Any, joints: Sequence[str]
 ) -> tuple[Array, Array, Array]:
     """Return position, velocity and effort of a message, in the order of the joints."""
-    order = places_of(f"{origin}, message {count} (from 0)", message.name, list(joints))
+    order = places_of(f"{origin}, message {count} (from 0)", message.name, joints)
     parts = []
     for name in ("position", "velocity", "effort"):
         values = np.asarray(getattr(message, name), dtype=np.float64)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._arrays import whole
 from ._reach import ReachableSet
 from ._recordings import Recordings, Run
 
@@ -91,6 +92,8 @@ def flowpipe(
     -------
     Axes
     """
+    count = np.shape(lower)[-1]
+    x, y = whole("x", x, 0, count - 1), whole("y", y, 0, count - 1)
     import matplotlib.pyplot as plt
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Rectangle

@@ -31,6 +31,13 @@ impl Failure {
         Self::Setting(error.to_string())
     }
 
+    /// Returns a failure about JSON that was made of arguments, whose lines no user sees.
+    pub(crate) fn json(what: &str, error: &serde_json::Error) -> Self {
+        let text = error.to_string();
+        let problem = text.split(" at line ").next().unwrap_or_default();
+        Self::Setting(format!("{what}: {problem}"))
+    }
+
     /// Returns the failure with runs in memory, which were written as CSV files in `folder`, by
     /// their names alone.
     pub(crate) fn of_runs_in(self, folder: &Path) -> Self {
@@ -78,8 +85,8 @@ impl Failure {
     }
 }
 
-/// Returns a text in which arguments are written as in Python, such as `max_gap` for `--max-gap`:
-/// errors of crates below conform name an option of the command.
+/// Returns a text in which arguments are written as in Python, such as `max_gap=SECONDS` for
+/// `--max-gap SECONDS`: errors of crates below conform name an option of the command.
 fn without_dashes(text: &str) -> String {
     let mut parts = text.split("--");
     let first = parts.next().unwrap_or_default().to_string();
@@ -87,7 +94,15 @@ fn without_dashes(text: &str) -> String {
         let is_name = |c: char| c.is_ascii_lowercase() || c == '-';
         let (name, rest) = part.split_at(part.find(|c| !is_name(c)).unwrap_or(part.len()));
         let begins = name.starts_with(|c: char| c.is_ascii_lowercase());
-        if begins { text + &name.replace('-', "_") + rest } else { text + "--" + part }
+        let value = rest.strip_prefix(' ').filter(|value| {
+            let word = value.split(|c: char| !c.is_ascii_uppercase()).next().unwrap_or_default();
+            word.len() > 1
+        });
+        match (begins, value) {
+            (false, _) => text + "--" + part,
+            (true, Some(value)) => text + &name.replace('-', "_") + "=" + value,
+            (true, None) => text + &name.replace('-', "_") + rest,
+        }
     })
 }
 
@@ -135,7 +150,10 @@ impl From<reachtube::abstraction::Error> for Failure {
         match error {
             reachtube::abstraction::Error::ModelFile { .. } => Self::ModelFile(text),
             reachtube::abstraction::Error::OrderZero
-            | reachtube::abstraction::Error::UnknownModel { .. } => Self::Setting(text),
+            | reachtube::abstraction::Error::UnknownModel { .. }
+            | reachtube::abstraction::Error::ExpansionPointSize { .. }
+            | reachtube::abstraction::Error::Radius { .. }
+            | reachtube::abstraction::Error::RadiusCount { .. } => Self::Setting(text),
             _ => Self::Other(text),
         }
     }
@@ -146,6 +164,9 @@ impl From<reachtube::identify::Error> for Failure {
         let text = error.to_string();
         match error {
             reachtube::identify::Error::Recordings(error) => error.into(),
+            reachtube::identify::Error::GainCount { .. }
+            | reachtube::identify::Error::Gain { .. }
+            | reachtube::identify::Error::JointNames { .. } => Self::Setting(text),
             _ => Self::Other(text),
         }
     }
@@ -183,10 +204,11 @@ impl From<reachtube::pipeline::Error> for Failure {
             Error::Robot(error) => (*error).into(),
             Error::Abstraction(error) => (*error).into(),
             Error::Verify(error) => (*error).into(),
-            Error::Settings { .. }
-            | Error::Choice { .. }
-            | Error::HeldOut { .. }
-            | Error::NothingLeft => Self::Setting(error.to_string()),
+            // Keys of a file of choices are arguments here.
+            Error::HeldOut { .. } | Error::NothingLeft => {
+                Self::Setting(error.to_string().replacen("held-out", "held_out", 1))
+            }
+            Error::Settings { .. } | Error::Choice { .. } => Self::Setting(error.to_string()),
             error => Self::Other(error.to_string()),
         }
     }

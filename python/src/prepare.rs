@@ -9,6 +9,7 @@ use reachtube::identify::prepare::{
     LogEntry, PrepareSettings, RawLog, cut_off, noise_left, prepare as prepared, read, windows,
 };
 use reachtube::recordings::{MemoryRuns, any_simulated};
+use serde_json::{Map, Value, json};
 
 use crate::failure::{Failure, Result};
 use crate::logs_on_disk::LogsOnDisk;
@@ -41,8 +42,7 @@ pub(crate) fn prepare(
     let (window, repeats, compensate) = cutting;
     let cutting = Cutting { window, repeats, compensate };
     let (windows, cut_off, changes) = watched(py, None, move |_| {
-        let settings: PrepareSettings =
-            serde_json::from_str(&settings).map_err(Failure::setting)?;
+        let settings = settings_of(&settings)?;
         let logs = LogsOnDisk::new(paths, runs.as_ref())?;
         let (windows, cut_off, changes) =
             cut(&robot, &logs, &settings, cutting).map_err(|failure| logs.named(failure))?;
@@ -50,6 +50,16 @@ pub(crate) fn prepare(
         Ok((windows, cut_off, changes))
     })?;
     Ok((NativeSource::in_memory(windows), cut_off, changes))
+}
+
+/// Reads settings that a caller gives. Each is tried by itself first, so that an error names it.
+fn settings_of(text: &str) -> Result<PrepareSettings> {
+    let given: Map<String, Value> = serde_json::from_str(text).map_err(Failure::setting)?;
+    for (name, value) in &given {
+        let one = serde_json::from_value::<PrepareSettings>(json!({ name: value }));
+        one.map_err(|error| Failure::json(name, &error))?;
+    }
+    serde_json::from_value(Value::Object(given)).map_err(Failure::setting)
 }
 
 fn cut(

@@ -99,7 +99,8 @@ impl NativeRobot {
     #[staticmethod]
     fn from_description(py: Python<'_>, text: &str) -> PyResult<Self> {
         let robot = || -> Result<_> {
-            let description = serde_json::from_str(text).map_err(Failure::setting)?;
+            let description = serde_json::from_str(text)
+                .map_err(|error| Failure::json("the description", &error))?;
             Ok(Self::new(Robot::from_description(&description)?))
         };
         robot().map_err(|failure| failure.raised(py))

@@ -274,6 +274,8 @@ def test_the_report_is_written_once(
     assert page.read_text(encoding="utf-8").lstrip().lower().startswith("<!doctype html>")
     with pytest.raises(rt.ReachtubeError, match="exists"):
         rt.report(model, data, tmp_path)
+    with pytest.raises(rt.SettingError, match="assets is 'outside'; give 'inside' or 'beside'"):
+        rt.report(model, data, tmp_path, assets="outside")  # type: ignore[arg-type]
 
 
 def test_implausible_answers_are_warned_of(robot: rt.Robot) -> None:

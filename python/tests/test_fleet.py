@@ -91,6 +91,13 @@ def test_a_fit_that_cannot_be_is_refused_before_anything_is_read(
     ]:
         with pytest.raises(rt.ReachtubeError, match=words):
             fleet.conform(robot, nowhere, **arguments)
+    for choice, words in [
+        ({"on_defect": "ignore"}, "on_defect is 'ignore'; give 'raise' or 'report'"),
+        ({"runs_per_task": 1.5}, "runs_per_task is 1.5 of type float"),
+        ({"runs_per_task": 0}, "runs_per_task is 0"),
+    ]:
+        with pytest.raises(rt.SettingError, match=words):
+            fleet.conform(robot, manifest, torque="compensated", **choice)  # type: ignore[arg-type]
     # Only a fold can know that its recordings share their input.
     with pytest.raises(rt.ReachtubeError, match="a fit of warm-up needs each recording"):
         fleet.conform(robot, manifest, torque="compensated", fit=["warm-up"], pull=0.02)

@@ -28,6 +28,9 @@ def conform(robot: Any, data: Any, **settings: Any) -> object:
         ({"order": "x"}, "order is 'x' of type str"),
         ({"order": -1}, "order is -1; give 1 to 255"),
         ({"paper_model": 2.5}, "paper_model is 2.5 of type float"),
+        ({"expansion": [1.0, 2.0]}, "the expansion point has 2 values, but the robot has 6 joints"),
+        ({"expansion": [float("nan")] * 6}, "expansion is .*; give finite numbers"),
+        ({"stiction": {1}}, r"settings: \{1\} is of type set"),
     ],
 )
 def test_settings_of_wrong_types_are_named(
@@ -58,6 +61,23 @@ def test_numbers_of_numpy_are_numbers(robot: rt.Robot, data: rt.Recordings) -> N
     found: Any = conform(robot, data, **own)
     assert found.settings["until"] == 0.125
     assert rt.Robot.load("lwa4p", lock={"joint6": np.float64(0.5)}).joints == 5
+    assert conform(robot, data, stiction=np.bool_(False)) == conform(robot, data)
+    with pytest.raises(rt.ReachtubeError, match="low-pass of 5 Hz"):
+        rt.identify(robot, dynamic=data[0], prepare={"cut_off": np.float32(5.0)})
+
+
+def test_what_users_write_is_taken(model: rt.Model, data: rt.Recordings) -> None:
+    assert rt.variables("x, y") == rt.variables("x y") == (X, Y) and +X == X
+    with pytest.raises(TypeError, match="'Polynomial' and 'Polynomial'"):
+        X / Y  # type: ignore[operator]
+    box = rt.Box([0, 1], [1, 2])  # type: ignore[arg-type]
+    assert box.lower.tolist() == [-1.0, -1.0] and rt.Box.from_bytes(box.to_bytes()) == box
+    found = rt.reach(model, data[0])[0]
+    assert found.contains(found.lower.tolist()).all()
+    with pytest.raises(rt.SettingError, match=r"states has the shape \(3, 12\)"):
+        found.contains(np.zeros((3, 12)))
+    with pytest.raises(rt.SettingError, match="scenario has a model and no data"):
+        rt.verify({"model": model, "obstacle": []})
 
 
 @pytest.mark.parametrize(
@@ -79,6 +99,30 @@ def test_numbers_of_numpy_are_numbers(robot: rt.Robot, data: rt.Recordings) -> N
         (lambda data: rt.flowpipe({X: -X}, {X: [1, 2, 3]}, [0, 1]), "an interval"),
         (lambda data: rt.flowpipe({X: -X}, {X: float("nan")}, [0, 1]), "give a finite number"),
         (lambda data: rt.flowpipe({X: X * float("inf")}, {X: 1}, [0, 1]), "must be finite"),
+        (lambda data: rt.Robot("arm.urdf"), r"Robot.load\(PATH\) reads .* given 'arm.urdf'"),
+        (lambda data: rt.Model("model.json"), r"Model.load\(PATH\) reads .* given 'model.json'"),
+        (lambda data: rt.Abstraction("a.json"), r"Abstraction.load\(PATH\) reads"),
+        (lambda data: rt.Monitor("model.json"), r"monitor\(model, step=SECONDS\)"),
+        (lambda data: data.inspect(max_gap=-1), "max_gap is -1.0 s; give a finite number above 0"),
+        (lambda data: rt.io.bag("a.mcap", joints=["a"], time="now"), "time is 'now'; give"),
+        (lambda data: rt.io.bag("a.mcap", joints=["a"], rest_speed=-1), "rest_speed is -1.0 rad/s"),
+        (lambda data: rt.io.bag("a.mcap", joints=["a"], max_gap=0), "max_gap is 0.0 s"),
+        (lambda data: rt.flowpipe([-X], {X: 1}, [0, 1]), "rates is of type list; give a dict"),
+        (lambda data: rt.flowpipe({X: -X}, {X: 1, Y: 2}, [0, 1]), "initial: y is no state"),
+        (lambda data: rt.flowpipe({X: -X}, {X: 1}, [0, 1], inputs={X: 1}), "x is a state"),
+        (lambda data: rt.variables(["x"]), "give one text"),
+        (lambda data: rt.sin(1.0), "sin of 1.0: give a single variable"),
+        (lambda data: rt.cos("x"), "'x' is no polynomial"),
+        (lambda data: rt.Box.from_bytes("x"), "data is of type str; give bytes"),
+        (lambda data: rt.Model.from_bytes("x"), "data is of type str; give bytes"),
+        (lambda data: rt.plot.flowpipe([[0.0]], [[1.0]]), "y is 1; give 0 to 0"),
+        (lambda data: rt.Robot.from_dict({}), "the description: missing field `schema_version`$"),
+        (lambda data: rt.conform(rt.Robot.lwa4p(), [], torque="motor"), "there are no recordings"),
+        (lambda data: rt.prepare(rt.Robot.lwa4p(), data, torque="m"), "torque: .* `link`$"),
+        (lambda data: rt.prepare(rt.Robot.lwa4p(), data, columns="q=p"), "columns is of type str"),
+        (lambda data: rt.model(rt.Robot.lwa4p(), data, columns=["q"]), "columns is of type list"),
+        (lambda data: rt.model(rt.Robot.lwa4p(), settings={}), "settings is of type dict"),
+        (lambda data: rt.abstract(rt.Robot.lwa4p(), box=[1, 2]), "the box has 2 radii; give 3"),
         (lambda data: X ** "a", "the exponent 'a'"),
         (lambda data: X + "a", "'a' is no polynomial"),
     ],

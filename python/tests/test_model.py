@@ -7,7 +7,9 @@ import os
 import pickle
 import subprocess
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -113,6 +115,7 @@ def test_arrays_become_a_useful_model(built: rt.BuiltModel, arm: rt.Robot) -> No
     assert "conformant" in [finding.code for finding in built.findings]
     assert "conformant and useful up to 0.1 s" in str(built) and "conformant" in repr(built)
     assert "--" not in str(built)
+    assert list(built.to_pandas().columns[:2]) == ["name", "half_width"]
     assert "<table" in built._repr_html_()
     assert pickle.loads(pickle.dumps(built)) == built
 
@@ -128,6 +131,89 @@ def test_logs_are_prepared_for_the_model(built: rt.BuiltModel, logs: list[rt.Run
     pushed = rt.Run(run.t, run.q, run.qd, run.tau + 30.0 * np.sin(20 * run.t)[:, None], name="odd")
     assert not rt.check(built.model, pushed)
     assert len(rt.reach(built.model, logs[:1])) == len(verdict.suites) / 3
+
+
+def gapped(run: rt.Run) -> rt.Run:
+    """Return a run without the samples of 0.08 s."""
+    kept = np.r_[:300, 320 : len(run)]
+    return rt.Run(run.t[kept], run.q[kept], run.qd[kept], run.tau[kept], name="gapped")
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_a_longer_gap_is_accepted_on_request(
+    built: rt.BuiltModel, arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
+) -> None:
+    brakes = {"torque": [[45, 60]] * 6, "delay": [0.01, 0.03]}
+    run = gapped(logs[0])
+    jobs: list[Callable[..., object]] = [
+        partial(rt.check, built.model, run),
+        partial(rt.reach, built.model, run),
+        partial(rt.report, built.model, run, tmp_path),
+        partial(rt.stop, built.model, run, brakes, every=20),
+    ]
+    for job in jobs:
+        with pytest.raises(rt.DefectsError, match="gapped:302: .* of 0.084.* max_gap=SECONDS"):
+            job()
+        with pytest.raises(rt.SettingError, match="max_gap is -1.0 s"):
+            job(max_gap=-1)
+        job(max_gap=0.1)
+    with pytest.raises(rt.DefectsError, match="a gap of 0.084"):
+        rt.model(arm, run, torque="motor", horizon=9.0)
+    with pytest.raises(rt.ReachtubeError, match="as long as the horizon of 9 s"):
+        rt.model(arm, [*logs, run], torque="motor", horizon=9.0, max_gap=0.1)
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_a_fit_is_what_its_arguments_say(
+    arm: rt.Robot, logs: list[rt.Run], choices: Path, tmp_path: Path
+) -> None:
+    found = rt.model(
+        arm, logs, "motor", horizon=0.05, settings=choices, fit=["viscous"], pull=0.02, max_gap=0.1
+    )
+    assert {choice.key: choice.value for choice in found.choices}["fit"] == "viscous"
+    assert found.model.verified
+    found.save(tmp_path)
+    written = (tmp_path / "choices.toml").read_text().splitlines()
+    assert {'fit = ["viscous"]', "pull = 0.02", "max-gap = 0.1"} <= set(written)
+    for wrong, words in [
+        ({"pull": 0.02}, "fit names no group"),
+        ({"fit": ["viscous"], "pull": 2.0}, "pull is 2.0; give a weight from 0 to 1"),
+        ({"fit": ["mass"]}, "fit: unknown variant `mass`"),
+        ({"max_gap": 0.0}, "max_gap is 0.0 s"),
+        ({"gains": [np.nan] * 6}, "gains is .*; give finite numbers"),
+        ({"gains": [1.0] * 5}, "gains: 5 given; give one for each of the 6 joints"),
+        ({"gains": [0.0] * 6}, "gain 1 is 0"),
+    ]:
+        with pytest.raises(rt.SettingError, match=words):
+            rt.model(arm, logs, "motor", **wrong)  # type: ignore[arg-type]
+
+
+def test_the_order_and_the_temperatures_of_runs_are_kept(
+    arm: rt.Robot, logs: list[rt.Run]
+) -> None:
+    warm: dict[str, Any] = {"torque": "motor", "fit": ["warm-up"], "horizon": 9.0}
+    with pytest.raises(rt.ReachtubeError, match="warm-up, for wave_0"):
+        rt.model(arm, logs, **warm)
+    ordered, heated = [], []
+    for order, run in zip((7, 3), logs, strict=False):
+        part = (run.t, run.q, run.qd, run.tau)
+        ordered.append(rt.Run(*part, suite="A", motion="m", order=order, name=run.name))
+        heat = np.full(run.q.shape, 20.0 + order)
+        heated.append(rt.Run(*part, temperature=heat, name=run.name))
+    for given in (ordered, heated):
+        with pytest.raises(rt.ReachtubeError, match="as long as the horizon of 9 s"):
+            rt.model(arm, given, **warm)
+    # Windows of logs have both.
+    for given, expected in [(ordered, {7, 3}), (heated, {1})]:
+        windows, _, _ = _conform._cut(arm, given, "motor", 0.5, None, None, ())
+        assert {row[4] for row in windows.index()} == expected
+        warmth = windows.read(0).arrays()[4]
+        assert (warmth is None) == (given is ordered)
+        assert warmth is None or set(warmth.ravel()) == {27.0}
+    # Runs of two data sets may have the same order.
+    same = [rt.Run(run.t, run.q, run.qd, run.tau, suite="A", order=1) for run in logs[:2]]
+    windows, _, _ = _conform._cut(arm, same, "motor", 0.5, None, None, ())
+    assert {row[4] for row in windows.index()} == {1, 2}
 
 
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
@@ -227,7 +313,10 @@ def test_wrong_arguments_are_named(arm: rt.Robot, logs: list[rt.Run], tmp_path: 
         ({"data": logs, "torque": "motors"}, "torque: unknown variant `motors`"),
         ({"data": logs, "torque": "motor", "horizon": -1.0}, "horizon is -1.0 s"),
         ({"data": logs, "torque": "motor", "horizon": 9.0}, "as long as the horizon of 9 s"),
-        ({"data": logs, "torque": "motor", "held_out": ["z"]}, "the motions are wave 0, wave 1"),
+        (
+            {"data": logs, "torque": "motor", "held_out": ["z"]},
+            'held_out = "z" .*the motions are wave 0, wave 1',
+        ),
         ({"data": [1], "torque": "motor"}, "a recording is of type int"),
         ({"data": tmp_path / "none", "torque": "motor"}, "none"),
         ({"settings": tmp_path / "none.toml"}, "none.toml"),
@@ -263,6 +352,10 @@ def test_windows_of_logs_are_what_the_command_writes(
         rt.prepare(arm, logs, window=-1.0)
     with pytest.raises(rt.SettingError, match="unknown field"):
         rt.prepare(arm, logs, columns={"torque": "m_{}"})
+    with pytest.raises(rt.SettingError, match="gains: 1 given"):
+        rt.prepare(arm, logs, gains=[2.0])
+    with pytest.raises(rt.SettingError, match="must name each of the robot's 6 joints"):
+        rt.prepare(arm, logs, joints=["a"])
 
 
 def test_runs_of_files_of_other_libraries_are_the_same_runs(
@@ -287,53 +380,3 @@ def test_columns_and_logs_that_do_not_fit_are_refused(
     (tmp_path / "run.mcap").write_bytes(b"no log")
     with pytest.raises(rt.ReachtubeError, match="neither MCAP nor SQLite"):
         rt.model(arm, tmp_path, "motor")
-
-
-def test_a_fit_is_what_its_arguments_say(
-    arm: rt.Robot, logs: list[rt.Run], choices: Path, tmp_path: Path
-) -> None:
-    found = rt.model(
-        arm, logs, "motor", horizon=0.05, settings=choices, fit=["viscous"], pull=0.02, max_gap=0.1
-    )
-    assert {choice.key: choice.value for choice in found.choices}["fit"] == "viscous"
-    assert found.model.verified
-    found.save(tmp_path)
-    written = (tmp_path / "choices.toml").read_text().splitlines()
-    assert {'fit = ["viscous"]', "pull = 0.02", "max-gap = 0.1"} <= set(written)
-    for wrong, words in [
-        ({"pull": 0.02}, "fit names no group"),
-        ({"fit": ["viscous"], "pull": 2.0}, "pull is 2.0; give a weight from 0 to 1"),
-        ({"fit": ["mass"]}, "fit: unknown variant `mass`"),
-        ({"max_gap": 0.0}, "max_gap is 0.0 s"),
-        ({"gains": [np.nan] * 6}, "gains is .*; give finite numbers"),
-    ]:
-        with pytest.raises(rt.SettingError, match=words):
-            rt.model(arm, logs, "motor", **wrong)  # type: ignore[arg-type]
-
-
-def test_the_order_and_the_temperatures_of_runs_are_kept(
-    arm: rt.Robot, logs: list[rt.Run]
-) -> None:
-    warm: dict[str, Any] = {"torque": "motor", "fit": ["warm-up"], "horizon": 9.0}
-    with pytest.raises(rt.ReachtubeError, match="warm-up, for wave_0"):
-        rt.model(arm, logs, **warm)
-    ordered, heated = [], []
-    for order, run in zip((7, 3), logs, strict=False):
-        part = (run.t, run.q, run.qd, run.tau)
-        ordered.append(rt.Run(*part, suite="A", motion="m", order=order, name=run.name))
-        heat = np.full(run.q.shape, 20.0 + order)
-        heated.append(rt.Run(*part, temperature=heat, name=run.name))
-    for given in (ordered, heated):
-        with pytest.raises(rt.ReachtubeError, match="as long as the horizon of 9 s"):
-            rt.model(arm, given, **warm)
-    # Windows of logs have both.
-    for given, expected in [(ordered, {7, 3}), (heated, {1})]:
-        windows, _, _ = _conform._cut(arm, given, "motor", 0.5, None, None, ())
-        assert {row[4] for row in windows.index()} == expected
-        warmth = windows.read(0).arrays()[4]
-        assert (warmth is None) == (given is ordered)
-        assert warmth is None or set(warmth.ravel()) == {27.0}
-    # Runs of two data sets may have the same order.
-    same = [rt.Run(run.t, run.q, run.qd, run.tau, suite="A", order=1) for run in logs[:2]]
-    windows, _, _ = _conform._cut(arm, same, "motor", 0.5, None, None, ())
-    assert {row[4] for row in windows.index()} == {1, 2}

@@ -179,7 +179,7 @@ def test_an_exciting_motion_stays_within_limits(robot: rt.Robot) -> None:
     ("setting", "words"),
     [
         ({"period": 1e300}, "period of 1e\\+300 s at a rate of 100.0 .*10000000 at most"),
-        ({"period": 0.0}, "period is 0.0; give a finite number above 0"),
+        ({"period": 0.0}, "period is 0.0 s; give a finite number above 0"),
         ({"period": "long"}, "period has the type"),
         ({"rate": float("inf")}, "rate is inf"),
         ({"rate": -1.0}, "rate is -1.0"),
@@ -208,6 +208,7 @@ def test_wrong_settings_of_a_motion_are_named(
         ({"order": 1.5}, "order is 1.5 of type float"),
         ({"paper_model": 4}, "paper_model is 4; give 1 to 3"),
         ({"most_boxes": -1, "box": [0.1, 0.1, 1.0]}, "most_boxes is -1"),
+        ({"most_boxes": 4}, "give box too"),
     ],
 )
 def test_wrong_settings_of_an_abstraction_are_named(
@@ -228,6 +229,9 @@ def test_wrong_settings_of_an_abstraction_are_named(
         ({"method": "tayler"}, "method is 'tayler'"),
         ({"order": -2}, "order is -2"),
         ({"vertex_variables": 25}, "vertex_variables is 25; give 0 to 24"),
+        ({"taylor_order": 6}, "give method='taylor' too"),
+        ({"method": "linearisation", "taylor_order": 6}, "give method='taylor' too"),
+        ({"method": "taylor", "vertex_variables": 2}, "give method='linearisation'"),
     ],
 )
 def test_wrong_settings_of_a_flowpipe_are_named(

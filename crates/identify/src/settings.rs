@@ -191,13 +191,7 @@ impl IdentifySettings {
         if self.dynamic.is_empty() {
             return Err(Error::NoExcitingMotions);
         }
-        let gains = &self.prepare.gains;
-        if !gains.is_empty() && gains.len() != joints {
-            return Err(Error::GainCount { given: gains.len(), joints });
-        }
-        if let Some(joint) = gains.iter().position(|gain| *gain == 0.0 || !gain.is_finite()) {
-            return Err(Error::Gain { number: joint + 1, gain: gains[joint] });
-        }
+        self.prepare.check_gains(joints)?;
         if self.model.separate_gravity && self.rest.is_empty() && self.friction.is_empty() {
             return Err(Error::SeparateGravity);
         }

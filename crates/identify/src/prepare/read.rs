@@ -28,6 +28,7 @@ use std::sync::Arc;
 /// - [`Error::File`] reports a path that cannot be read, [`Error::NoCsvFile`] an empty folder.
 /// - [`Error::Log`] reports a log in MCAP or rosbag2 that cannot be read.
 /// - [`Error::JointNames`] reports names that are not the robot's joints.
+/// - [`Error::GainCount`] and [`Error::Gain`] report gains that are not one for each joint.
 /// - [`Error::TimeUnit`] reports times that are not in seconds.
 pub fn read(
     entries: &[LogEntry],
@@ -35,6 +36,7 @@ pub fn read(
     robot: &Robot,
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
+    settings.check_gains(robot.joint_count())?;
     let sources = sources(entries, folder, robot, settings)?;
     let read = sources.iter().map(|source| source.read(robot, settings));
     let mut logs = read.collect::<Result<Vec<RawLog>>>()?;
@@ -382,13 +384,11 @@ mod tests {
         let none = PrepareSettings::default();
         let refused = read(&entries, folder.path(), &robot, &none).unwrap_err().to_string();
         assert!(refused.contains("motor currents: actual_current_0"), "{refused}");
-        let gains = PrepareSettings { gains: vec![3.0; 6], ..PrepareSettings::default() };
-        let logs = read(&entries, folder.path(), &robot, &gains).unwrap();
-        let said = logs
-            .iter()
-            .flat_map(|log| [log.notes.clone(), log.moved.clone()].concat())
-            .collect::<Vec<_>>()
-            .join("\n");
+        let gains = |count| PrepareSettings { gains: vec![3.0; count], ..none.clone() };
+        assert!(read(&entries, folder.path(), &robot, &gains(5)).is_err());
+        let logs = read(&entries, folder.path(), &robot, &gains(6)).unwrap();
+        let said = |log: &RawLog| [log.notes.clone(), log.moved.clone()].concat();
+        let said = logs.iter().flat_map(said).collect::<Vec<_>>().join("\n");
         assert!(said.contains("b.csv: joint1 is a turn away from other recordings"), "{said}");
         assert!(said.contains("the times are in ms") && said.contains("in degrees"), "{said}");
         for log in &logs {

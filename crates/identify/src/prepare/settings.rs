@@ -1,3 +1,4 @@
+use crate::error::{Error, Result};
 use reachtube_recordings::{ColumnSettings, GapLimit, LogSettings, Torque};
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,22 @@ impl PrepareSettings {
     pub(crate) fn gap_limit(&self) -> GapLimit {
         self.max_gap.into()
     }
+
+    /// Checks the gains for a robot with a number of joints.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GainCount`] or [`Error::Gain`].
+    pub(crate) fn check_gains(&self, joints: usize) -> Result<()> {
+        let gains = &self.gains;
+        if !gains.is_empty() && gains.len() != joints {
+            return Err(Error::GainCount { given: gains.len(), joints });
+        }
+        match gains.iter().position(|gain| *gain == 0.0 || !gain.is_finite()) {
+            Some(joint) => Err(Error::Gain { number: joint + 1, gain: gains[joint] }),
+            None => Ok(()),
+        }
+    }
 }
 
 fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
@@ -59,4 +76,26 @@ pub enum VelocitySource {
     Recorded,
     /// The derivative of the filtered position.
     Differentiated,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PrepareSettings;
+
+    #[test]
+    fn gains_are_one_for_each_joint() {
+        let check = |gains: &[f64]| {
+            let settings = PrepareSettings { gains: gains.into(), ..PrepareSettings::default() };
+            settings.check_gains(2).map_err(|error| error.to_string())
+        };
+        assert_eq!([check(&[]), check(&[-1.0, 2.5])], [Ok(()), Ok(())]);
+        for (gains, words) in [
+            (&[1.0][..], "1 given; give one for each of the 2 joints"),
+            (&[1.0, 0.0], "gain 2 is 0"),
+            (&[f64::NAN, 1.0], "gain 1 is NaN"),
+        ] {
+            let error = check(gains).unwrap_err();
+            assert!(error.contains(words), "{error}");
+        }
+    }
 }
