@@ -14,14 +14,14 @@ use crate::header::is_strict_header;
 const HEADER_BYTES: u64 = 1 << 16;
 
 /// Returns whether a file is a recording in the format of `docs/recordings.md`, with the header
-/// `t,q1..qn,qd1..qdn,tau1..taun`, and `columns` do not state other units than its own. Other files
-/// are logs, which [`read_logged`](super::read_logged) reads. A file that cannot be read is taken
+/// `t,q1..qn,qd1..qdn,tau1..taun`, and `columns` give nothing. Other files are logs, which
+/// [`read_logged`](super::read_logged) reads as `columns` say. A file that cannot be read is taken
 /// for a recording, whose reader says why.
 #[must_use]
 pub fn is_recording(file: &Path, columns: &ColumnSettings) -> bool {
-    let has_units = columns.angle.is_some() || columns.time_unit.is_some();
+    let is_given = *columns != ColumnSettings::default();
     // Reading a pipe would empty it.
-    !file.is_file() || (!has_units && head(file).is_none_or(|bytes| is_strict_header(&bytes)))
+    !file.is_file() || (!is_given && head(file).is_none_or(|bytes| is_strict_header(&bytes)))
 }
 
 fn head(file: &Path) -> Option<Vec<u8>> {

@@ -285,8 +285,11 @@ fn wrong_cells_and_times_are_named_with_line_and_column() {
 fn the_format_of_recordings_is_no_log() {
     let (_folder, path) = written("t,q1,qd1,tau1,temp1\n0,0,0,0,20\n");
     assert!(is_recording(&path, &ColumnSettings::default()));
-    let degrees = "angle=deg".parse().unwrap();
-    assert!(!is_recording(&path, &degrees), "the unit would be ignored");
+    for key in
+        ["angle=deg", "time_unit=s", "tau=taum{}", "q=p{}", "qd=v{}", "time=clock", "first=1"]
+    {
+        assert!(!is_recording(&path, &key.parse().unwrap()), "{key} would be ignored");
+    }
     let (_folder, path) = written("t,q1,dq1,tau1\n0,0,0,0\n");
     assert!(!is_recording(&path, &ColumnSettings::default()));
 }
