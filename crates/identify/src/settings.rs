@@ -191,7 +191,7 @@ impl IdentifySettings {
         if self.dynamic.is_empty() {
             return Err(Error::NoExcitingMotions);
         }
-        self.prepare.check_gains(joints)?;
+        self.prepare.gain_of_each_joint(joints)?;
         if self.model.separate_gravity && self.rest.is_empty() && self.friction.is_empty() {
             return Err(Error::SeparateGravity);
         }

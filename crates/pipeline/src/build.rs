@@ -77,6 +77,7 @@ pub fn build(
     given.check_numbers()?;
     let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
     let settings = PrepareSettings { torque: Some(torque), ..given.prepare_settings() };
+    settings.gain_of_each_joint(robot.joint_count())?;
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let journal = Journal::open(journal, digest(robot, torque, given, &sorted.digest));
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;

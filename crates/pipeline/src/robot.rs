@@ -247,13 +247,13 @@ impl Evidence<'_> {
             Err(_) => return Ok(f64::INFINITY),
         };
         let errors = answer.found.input_error;
-        let gains = &self.settings.gains;
+        let gains = self.settings.gain_of_each_joint(errors.len())?;
         let torque = |joint: usize| {
             let runs = self.motions.iter().map(|motion| &motion.log.run);
             let values = runs.flat_map(|run| (0..run.len()).map(move |k| run.torque(k)[joint]));
             let (sum, count) =
                 values.fold((0.0, 0usize), |(sum, count), tau| (sum + tau * tau, count + 1));
-            gains.get(joint).unwrap_or(&1.0).abs() * (sum / count.max(1) as f64).sqrt()
+            gains[joint].abs() * (sum / count.max(1) as f64).sqrt()
         };
         let parts = errors.iter().enumerate().map(|(joint, error)| error / torque(joint).max(1e-9));
         Ok(parts.sum::<f64>() / errors.len() as f64)

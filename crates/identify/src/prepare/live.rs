@@ -3,7 +3,7 @@ use reachtube_robot::{Robot, Workspace};
 
 use crate::error::{Error, Result};
 use crate::prepare::low_pass::LowPass;
-use crate::prepare::settings::VelocitySource;
+use crate::prepare::settings::{VelocitySource, gain_of_each_joint};
 
 /// Periods of the cut-off to both sides over which samples are weighed. Beyond them, the low-pass
 /// has died out to a thousandth.
@@ -34,7 +34,8 @@ impl LiveLog {
     ///
     /// # Errors
     ///
-    /// [`Error::SampledTooSlowly`] where the low-pass needs more samples.
+    /// [`Error::SampledTooSlowly`] where the low-pass needs more samples; [`Error::GainCount`] and
+    /// [`Error::Gain`].
     pub fn new(
         robot: &Robot,
         preparation: &Preparation,
@@ -51,7 +52,7 @@ impl LiveLog {
                 Some(LiveFilter::new(robot, *torque, *cut_off, step, differentiates)?)
             }
         };
-        let gains = if gains.is_empty() { vec![1.0; n] } else { gains.clone() };
+        let gains = gain_of_each_joint(gains, n)?;
         let even = EvenSamples::new(n, step, longest_gap);
         Ok(Self { gains, even, filter, made: Sample::zeros(n) })
     }
@@ -289,6 +290,26 @@ mod tests {
 
     const STEP: f64 = 0.01;
 
+    #[test]
+    fn gains_of_another_number_of_joints_are_refused() {
+        let (robot, gains) = (Robot::lwa4p(), vec![2.0; 3]);
+        let known = Preparation { gains, ..preparation() };
+        let refused = LiveLog::new(&robot, &known, VelocitySource::Recorded, STEP, STEP);
+        assert!(refused.unwrap_err().to_string().contains("gains: 3 given"));
+    }
+
+    fn preparation() -> Preparation {
+        Preparation {
+            torque: Torque::Motor,
+            gains: Vec::new(),
+            cut_off: Some(5.0),
+            window: None,
+            max_gap: None,
+            columns: Default::default(),
+            log: Default::default(),
+        }
+    }
+
     /// A smooth motion of the LWA 4P with torques that fit neither.
     fn run(samples: usize) -> Run {
         let wave = |k: usize, j: usize, f: f64| (f * k as f64 * STEP + j as f64).sin();
@@ -324,15 +345,7 @@ mod tests {
                     moved: vec![],
                 };
                 let log = &prepare(&[raw], &settings, 5.0, Some(&robot)).unwrap().logs[0];
-                let preparation = Preparation {
-                    torque,
-                    gains,
-                    cut_off: Some(5.0),
-                    window: None,
-                    max_gap: None,
-                    columns: Default::default(),
-                    log: Default::default(),
-                };
+                let preparation = Preparation { torque, gains, ..preparation() };
                 let mut live = LiveLog::new(&robot, &preparation, velocity, STEP, STEP).unwrap();
                 // The recording was cut by 2.5 periods at its ends.
                 let cut = (run.len() - log.len()) / 2;

@@ -6,7 +6,7 @@ use crate::prepare::low_pass::{LowPass, TRANSIENT_PERIODS};
 use crate::prepare::motors::add_motor_inertia;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
-use crate::prepare::settings::{PrepareSettings, VelocitySource};
+use crate::prepare::settings::{PrepareSettings, VelocitySource, gain_of_each_joint};
 use crate::prepare::signals::{Signals, set_column, without_motion};
 use rayon::prelude::*;
 use reachtube_recordings::{Run, Torque};
@@ -46,7 +46,7 @@ pub struct Prepared {
 /// # Errors
 ///
 /// [`Error::TooShort`] and [`Error::SampledTooSlowly`] name a recording that does not suit the
-/// cut-off.
+/// cut-off; [`Error::GainCount`] and [`Error::Gain`].
 pub fn prepare(
     raw: &[RawLog],
     settings: &PrepareSettings,
@@ -80,7 +80,7 @@ pub fn prepare(
 ///
 /// # Errors
 ///
-/// [`Error::TooShort`] for a recording of one sample.
+/// [`Error::TooShort`] for a recording of one sample; [`Error::GainCount`] and [`Error::Gain`].
 pub fn unfiltered(raw: &RawLog, gains: &[f64]) -> Result<PreparedLog> {
     let step = median_step(&raw.run.times).ok_or_else(|| Error::TooShort {
         log: raw.name.clone(),
@@ -89,11 +89,11 @@ pub fn unfiltered(raw: &RawLog, gains: &[f64]) -> Result<PreparedLog> {
         cut_off: f64::INFINITY,
     })?;
     let n = raw.run.joints;
+    let gains = gain_of_each_joint(gains, n)?;
     let even = |which, joint| resampled(&raw.run.times, raw.column(which, joint), step);
     let mut log = without_motion(raw, step);
-    for joint in 0..n {
+    for (joint, gain) in gains.iter().enumerate() {
         let qd = even(Run::qd, joint);
-        let gain = gains.get(joint).copied().unwrap_or(1.0);
         let columns = [
             (&mut log.q, even(Run::q, joint)),
             (&mut log.qdd, derivative(&qd, step)),
@@ -160,7 +160,8 @@ pub(crate) fn prepare_one(
         VelocitySource::Differentiated => true,
         VelocitySource::Quieter => signals.is_differentiated_quieter() || signals.lag(),
     };
-    let mut log = signals.log(&settings.gains, differentiated);
+    let gains = settings.gain_of_each_joint(raw.run.joints)?;
+    let mut log = signals.log(&gains, differentiated);
     if let Some(robot) = compensated {
         signals.compensate(&mut log, robot);
         if settings.torque == Some(Torque::Link) {
@@ -268,6 +269,20 @@ mod tests {
         let (compensated, as_recorded) = (furthest(Some(&robot)), furthest(None));
         // A tenth of the friction, and more than all of it.
         assert!(compensated < 0.3 && as_recorded > 3.0, "{compensated} {as_recorded}");
+    }
+
+    #[test]
+    fn gains_that_do_not_fit_the_joints_are_errors() {
+        for (gains, problem) in [
+            (vec![1.0, 1.0], "gains: 2 given; give one for each of the 1 joints"),
+            (vec![f64::NAN], "gains: gain 1 is NaN"),
+            (vec![0.0], "gains: gain 1 is 0"),
+        ] {
+            let settings = PrepareSettings { gains: gains.clone(), ..PrepareSettings::default() };
+            let filtered = prepare(&[wave()], &settings, 4.0, None).unwrap_err().to_string();
+            let as_recorded = unfiltered(&wave(), &gains).unwrap_err().to_string();
+            assert!([&filtered, &as_recorded].iter().all(|e| e.contains(problem)), "{filtered}");
+        }
     }
 
     #[test]

@@ -36,7 +36,7 @@ pub fn read(
     robot: &Robot,
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
-    settings.check_gains(robot.joint_count())?;
+    settings.gain_of_each_joint(robot.joint_count())?;
     let sources = sources(entries, folder, robot, settings)?;
     let read = sources.iter().map(|source| source.read(robot, settings));
     let mut logs = read.collect::<Result<Vec<RawLog>>>()?;

@@ -1,6 +1,7 @@
-use crate::error::{Error, Result};
 use reachtube_recordings::{ColumnSettings, GapLimit, LogSettings, Torque};
 use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
 
 /// Settings of how recordings are prepared.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -38,25 +39,32 @@ pub struct PrepareSettings {
 }
 
 impl PrepareSettings {
+    /// Returns the gain of each of a robot's joints, which is 1 if none are given.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::GainCount`] and [`Error::Gain`].
+    pub fn gain_of_each_joint(&self, joints: usize) -> Result<Vec<f64>> {
+        gain_of_each_joint(&self.gains, joints)
+    }
+
     /// Returns the limit of the times between samples.
     pub(crate) fn gap_limit(&self) -> GapLimit {
         self.max_gap.into()
     }
+}
 
-    /// Checks the gains for a robot with a number of joints.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::GainCount`] or [`Error::Gain`].
-    pub(crate) fn check_gains(&self, joints: usize) -> Result<()> {
-        let gains = &self.gains;
-        if !gains.is_empty() && gains.len() != joints {
-            return Err(Error::GainCount { given: gains.len(), joints });
-        }
-        match gains.iter().position(|gain| *gain == 0.0 || !gain.is_finite()) {
-            Some(joint) => Err(Error::Gain { number: joint + 1, gain: gains[joint] }),
-            None => Ok(()),
-        }
+/// Does what [`PrepareSettings::gain_of_each_joint`] does for the gains `given`.
+pub(crate) fn gain_of_each_joint(given: &[f64], joints: usize) -> Result<Vec<f64>> {
+    if given.is_empty() {
+        return Ok(vec![1.0; joints]);
+    }
+    if given.len() != joints {
+        return Err(Error::GainCount { given: given.len(), joints });
+    }
+    match given.iter().position(|gain| *gain == 0.0 || !gain.is_finite()) {
+        Some(joint) => Err(Error::Gain { number: joint + 1, gain: given[joint] }),
+        None => Ok(given.to_vec()),
     }
 }
 
@@ -86,9 +94,10 @@ mod tests {
     fn gains_are_one_for_each_joint() {
         let check = |gains: &[f64]| {
             let settings = PrepareSettings { gains: gains.into(), ..PrepareSettings::default() };
-            settings.check_gains(2).map_err(|error| error.to_string())
+            settings.gain_of_each_joint(2).map_err(|error| error.to_string())
         };
-        assert_eq!([check(&[]), check(&[-1.0, 2.5])], [Ok(()), Ok(())]);
+        assert_eq!(check(&[]), Ok(vec![1.0; 2]));
+        assert_eq!(check(&[-1.0, 2.5]), Ok(vec![-1.0, 2.5]));
         for (gains, words) in [
             (&[1.0][..], "1 given; give one for each of the 2 joints"),
             (&[1.0, 0.0], "gain 2 is 0"),

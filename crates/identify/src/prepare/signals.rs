@@ -47,18 +47,17 @@ impl<'a> Signals<'a> {
         Lag::contradict(&lags, self.step)
     }
 
-    /// Returns the filtered log with the ends still in place.
+    /// Returns the filtered log with the ends still in place; `gains` has one value per joint.
     pub(super) fn log(&self, gains: &[f64], differentiated: bool) -> PreparedLog {
         let n = self.raw.run.joints;
         let mut log = without_motion(self.raw, self.step);
-        for joint in 0..n {
+        for (joint, gain) in gains.iter().enumerate() {
             let q = self.filtered(self.even(Run::q, joint));
             let qd = if differentiated {
                 derivative(&q, self.step)
             } else {
                 self.filtered(self.even(Run::qd, joint))
             };
-            let gain = gains.get(joint).copied().unwrap_or(1.0);
             let tau = self.filtered(self.even(Run::torque, joint));
             let columns = [
                 (&mut log.q, q),
