@@ -9,8 +9,8 @@ use reachtube_recordings::{
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::sorted::{origins_of, read_logs};
-use crate::windows::{Origin, Prepared};
+use crate::sorted::{origins_of, read_logs, without_suite_note};
+use crate::windows::{Origin, Prepared, windows_of};
 
 /// Logs that were cut into windows, and what was done to them.
 #[derive(Debug, Clone)]
@@ -48,6 +48,7 @@ impl Cut {
         let raw = read_logs(paths, robot, &settings)?;
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
+        notes.extend(without_suite_note(&raw));
         let origins = &origins_of(&raw);
         let cut_off = match torque {
             Torque::Compensated => None,
@@ -64,7 +65,7 @@ impl Cut {
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         let prepared =
             Prepared { logs: &logs, origins, from_start: false, divides: false, simulated };
-        let windows = prepared.cut(horizon, usize::MAX)?;
+        let windows = prepared.cut(horizon, usize::MAX)?.named(windows_of(paths));
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));
         let preparation = Preparation {
@@ -154,10 +155,20 @@ mod tests {
             std::fs::write(folder.path().join(format!("run{order}.csv")), log).unwrap();
             writeln!(index, "run{order}.csv,A,{order}").unwrap();
         }
-        std::fs::write(folder.path().join("runs.csv"), index).unwrap();
+        std::fs::write(folder.path().join("runs.csv"), &index).unwrap();
         let robot = hinge();
         let paths = [folder.path().to_path_buf()];
-        let cut = Cut::new(&robot, Torque::Compensated, 0.25, None, &[], &paths).unwrap();
+        let cut = || Cut::new(&robot, Torque::Compensated, 0.25, None, &[], &paths).unwrap();
+        let noted = |cut: &Cut| cut.notes.iter().any(|n| n.contains("no suite in runs.csv"));
+        let one = index.replace("run7.csv,A,7\n", "");
+        std::fs::write(folder.path().join("runs.csv"), one).unwrap();
+        assert!(noted(&cut()) && cut().notes.concat().contains("1 of the 2 recordings have no"));
+        std::fs::write(folder.path().join("runs.csv"), index).unwrap();
+        let cut = cut();
+        assert!(!noted(&cut));
+        let unknown = cut.windows.select(&["run7".into()]).unwrap_err().to_string();
+        let windows = format!("windows of {}: ", paths[0].display());
+        assert!(unknown.starts_with(&windows) && unknown.contains("\"run7*\""), "{unknown}");
         let windows = cut.windows.runs();
         assert_eq!(windows.len(), 8);
         for (index, window) in windows.iter().enumerate() {

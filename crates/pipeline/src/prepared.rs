@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::planned::Planned;
 use crate::robot::prepare_for;
 use crate::sorted::{WARMTH, origins_of, read_logs, unknown_warmth};
-use crate::windows::Prepared;
+use crate::windows::{Prepared, windows_of};
 
 /// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
 /// CSV file (a planned motion), or for a model that `model` made, logs, which are prepared as its
@@ -80,5 +80,5 @@ pub fn prepared(
         (None, Some(said)) => said.horizon.min(longest),
         (None, None) => longest,
     };
-    prepared.cut(horizon, usize::MAX)
+    Ok(prepared.cut(horizon, usize::MAX)?.named(windows_of(paths)))
 }

@@ -144,6 +144,24 @@ pub(crate) fn read_logs(
     Ok(raw)
 }
 
+/// Returns a note about recordings without a suite beside others whose index gives them one:
+/// windows are cut from all.
+pub(crate) fn without_suite_note(raw: &[RawLog]) -> Option<String> {
+    // Only an index with a suite gives an order.
+    let mut without = raw.iter().filter(|log| log.order.is_none());
+    let (first, more) = (without.next()?, without.count());
+    (more + 1 < raw.len()).then(|| {
+        format!(
+            "{} of the {} recordings have no suite in runs.csv, for example {}; they are used too, \
+             because each log is cut into suites of its own: to leave them out, move them to \
+             another folder",
+            more + 1,
+            raw.len(),
+            first.file.display()
+        )
+    })
+}
+
 /// Gives recordings of one name the names of their folders too, and numbers where these are the
 /// same.
 fn name_apart(raw: &mut [RawLog]) {

@@ -1,6 +1,7 @@
 //! Prepared recordings cut into windows, as recordings of a conformance.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use reachtube_identify::prepare::{PreparedLog, Window, windows};
 use reachtube_recordings::{MemoryRuns, Run};
@@ -112,6 +113,12 @@ impl Prepared<'_> {
     fn motion<'a>(&'a self, log: &'a String) -> &'a str {
         self.origins.get(log).map_or(log, |origin| &origin.motion)
     }
+}
+
+/// Returns what messages call the windows of logs at some paths.
+pub(crate) fn windows_of(paths: &[PathBuf]) -> String {
+    let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    format!("windows of {}", paths.join(", "))
 }
 
 /// Returns the samples of a window as a recording. Its times are multiples of the sample time to

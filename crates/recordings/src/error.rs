@@ -19,7 +19,9 @@ pub enum Error {
         [] => "no run has a suite; assign the runs that start from one state under one input to a \
                suite, by the column suite".into(),
         some => format!(
-            "there is no suite \"{name}\"; the data set has {}", some.join(", ")
+            "there is no suite \"{name}\"; the data set has {}{}",
+            listed(some),
+            beginning(name, some)
         ),
     })]
     UnknownSuite {
@@ -36,6 +38,25 @@ pub enum Error {
         /// The names asked for.
         names: Vec<String>,
     },
+}
+
+/// Number of suites that an error lists.
+const LISTED: usize = 20;
+
+/// Lists suites, the first of many.
+fn listed(suites: &[String]) -> String {
+    match suites.len() {
+        many if many > LISTED => format!("{}, .. ({many} suites)", suites[..LISTED].join(", ")),
+        _ => suites.join(", "),
+    }
+}
+
+/// Returns the pattern that selects the suites whose names begin with `name`, if there are any.
+fn beginning(name: &str, suites: &[String]) -> String {
+    match suites.iter().filter(|suite| suite.starts_with(name)).count() {
+        0 => String::new(),
+        count => format!("; \"{name}*\" selects {count} of them"),
+    }
 }
 
 /// A result of this crate.

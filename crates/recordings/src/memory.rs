@@ -23,9 +23,17 @@ use crate::source::{ReadOptions, RunSource};
 pub struct MemoryRuns {
     entries: Vec<RunEntry>,
     runs: Vec<Run>,
+    /// What messages call the runs, where it is known.
+    name: Option<PathBuf>,
 }
 
 impl MemoryRuns {
+    /// Returns the runs with a name for messages, such as where they were cut from.
+    #[must_use]
+    pub fn named(self, name: impl Into<PathBuf>) -> Self {
+        Self { name: Some(name.into()), ..self }
+    }
+
     /// Adds a run under a name, with its suite and the motion that the suite is part of. The run's
     /// SHA-256 becomes the SHA-256 of its numbers.
     ///
@@ -61,7 +69,7 @@ impl MemoryRuns {
 
 impl RunSource for MemoryRuns {
     fn index_name(&self) -> PathBuf {
-        "runs in memory".into()
+        self.name.clone().unwrap_or_else(|| "runs in memory".into())
     }
 
     fn runs(&self) -> &[RunEntry] {

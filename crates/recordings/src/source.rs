@@ -193,6 +193,14 @@ mod tests {
         assert_eq!(text, "runs in memory: there is no suite \"C\"; the data set has B, A");
         let unmatched = error(&THREE, &["A", "C*"]).to_string();
         assert!(unmatched.contains("no suite \"C*\"; the data set has B, A"), "{unmatched}");
+        let windows: Vec<String> = (10..40).map(|k| format!("R1_w{k}")).collect();
+        let windows: Vec<_> = windows.iter().map(|name| (Some(name.as_str()), None)).collect();
+        let source = source(&windows).named("windows of logs");
+        let many = source.select(&names(&["R1"])).unwrap_err().to_string();
+        let start = "windows of logs: there is no suite \"R1\"; the data set has R1_w10, R1_w11, ";
+        assert!(many.starts_with(start), "{many}");
+        let end = "R1_w29, .. (30 suites); \"R1*\" selects 30 of them";
+        assert!(many.ends_with(end), "{many}");
         assert!(matches!(error(&THREE, &["A", "A"]), Error::RepeatedSuite { .. }));
         let none = error(&THREE[2..3], &[]).to_string();
         assert!(none.contains("no run has a suite"), "{none}");
