@@ -6,7 +6,8 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use reachtube::Robot;
 use reachtube::identify::prepare::{
-    LogEntry, PrepareSettings, RawLog, cut_off, noise_left, prepare as prepared, read, windows,
+    LogEntry, PrepareSettings, RawLog, check_window, cut_off, noise_left, prepare as prepared,
+    read, windows,
 };
 use reachtube::recordings::{MemoryRuns, any_simulated};
 use serde_json::{Map, Value, json};
@@ -75,6 +76,7 @@ fn cut(
     }
     let entries: Vec<LogEntry> = logs.paths.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, std::path::Path::new(""), robot, settings)?;
+    window.map_or(Ok(()), |window| check_window(window, &raw))?;
     let cut_off = cut_off(&raw.iter().collect::<Vec<&RawLog>>(), settings)?;
     let prepared = prepared(&raw, settings, cut_off, compensate.then_some(robot))?;
     let mut cut = windows(&prepared.logs, window, repeats);

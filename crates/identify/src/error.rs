@@ -169,6 +169,20 @@ pub enum Error {
         /// The cut-off \[Hz\].
         cut_off: f64,
     },
+    /// A window is shorter than the time between the samples of a recording.
+    #[error(
+        "{log}: a window of {window} s is shorter than the time between samples, {} s; give a \
+         window of that length at least, or recordings with more samples",
+        microseconds(*step)
+    )]
+    ShortWindow {
+        /// Name of the recording.
+        log: String,
+        /// Length of the window \[s\].
+        window: f64,
+        /// Median time between its samples \[s\].
+        step: f64,
+    },
     /// All joints stand still in the recordings for the inertial parameters.
     #[error(
         "no joint moves in the recordings for the inertial parameters; name recordings of motions \
@@ -236,6 +250,11 @@ impl From<reachtube_logs::Error> for Error {
             error => Self::Log(error),
         }
     }
+}
+
+/// Rounds a time \[s\] to the microsecond.
+fn microseconds(time: f64) -> f64 {
+    (1e6 * time).round() / 1e6
 }
 
 /// Names the recording of a fit that has the content of a validation recording.

@@ -3,7 +3,7 @@ use std::path::Path;
 use reachtube_conform::result::Severity;
 use reachtube_conform::settings::Equations;
 use reachtube_conform::{Answer, Finding, FitSettings, Group, Progress};
-use reachtube_identify::prepare::{PrepareSettings, RawLog};
+use reachtube_identify::prepare::{PrepareSettings, RawLog, check_window};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
@@ -84,6 +84,7 @@ pub fn build(
     refuse_unknown_warmth(given, &split)?;
     chooser.choose_held_out(&split);
     let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &*recording.log).collect();
+    given.horizon.map_or(Ok(()), |horizon| check_window(horizon, raw.iter().copied()))?;
     let choices = first_choices(&mut chooser, &journal, robot, torque, &raw, &settings);
     let (first, cut_off) = choices?;
 

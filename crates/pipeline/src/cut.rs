@@ -1,7 +1,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off, prepare, unfiltered};
+use reachtube_identify::prepare::{
+    PrepareSettings, RawLog, check_window, cut_off, prepare, unfiltered,
+};
 use reachtube_recordings::{
     ColumnSettings, LogSettings, MemoryRuns, Preparation, RunSource, Torque, any_simulated,
     matching,
@@ -46,6 +48,7 @@ impl Cut {
         let settings =
             PrepareSettings { max_gap, torque: Some(torque), ..PrepareSettings::default() };
         let raw = read_logs(paths, robot, &settings)?;
+        check_window(horizon, &raw)?;
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
         notes.extend(without_suite_note(&raw));
@@ -140,6 +143,18 @@ mod tests {
         assert_ne!(all, slow);
         assert_eq!(cut_off(&["fast"], ""), slow);
         assert_eq!(cut_off(&["*"], ""), all, "a conformance refuses it");
+    }
+
+    #[test]
+    fn windows_without_a_second_sample_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let log = "t,q1,qd1,tau1\n0,0,1,0\n0.1,0.1,1,0\n0.2,0.2,1,0\n";
+        std::fs::write(folder.path().join("a.csv"), log).unwrap();
+        let paths = [folder.path().to_path_buf()];
+        let cut = |horizon| Cut::new(&hinge(), Torque::Compensated, horizon, None, &[], &paths);
+        let refused = cut(0.001).unwrap_err().to_string();
+        assert!(refused.contains("0.001 s is shorter than") && refused.contains("0.1 s"));
+        assert_eq!(cut(0.1).unwrap().windows.runs().len(), 2);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use reachtube_conform::{CheckJob, Model, Setup};
-use reachtube_identify::prepare::{PrepareSettings, RawLog};
+use reachtube_identify::prepare::{PrepareSettings, RawLog, check_window};
 use reachtube_recordings::{DataSet, MemoryRuns, Preparation, any_simulated};
 use reachtube_robot::Robot;
 
@@ -63,6 +63,7 @@ pub fn prepared(
         ..PrepareSettings::default()
     };
     let raw = read_logs(paths, &robot, &settings)?;
+    window.map_or(Ok(()), |window| check_window(window, &raw))?;
     if let Some(warming) = model.correction.as_ref().filter(|known| known.differs_by_run()) {
         let logs: Vec<&RawLog> = raw.iter().collect();
         if let Some(file) = unknown_warmth(&logs, warming.reference_temperatures.is_some()) {

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::identify::prepare::{
-    LogEntry, PrepareSettings, PreparedLog, RawLog, cut_off, noise_left, prepare, read, windows,
+    LogEntry, PrepareSettings, PreparedLog, RawLog, check_window, cut_off, noise_left, prepare,
+    read, windows,
 };
 use reachtube::recordings::{ColumnSettings, Torque, any_simulated};
 use serde_json::json;
@@ -87,6 +88,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim(&index)?;
     let entries: Vec<LogEntry> = args.data.iter().cloned().map(LogEntry::from).collect();
     let raw = read(&entries, std::path::Path::new(""), &robot, &settings)?;
+    args.window.map_or(Ok(()), |window| check_window(window, &raw))?;
     let cut_off = cut_off(&raw.iter().collect::<Vec<&RawLog>>(), &settings)?;
     let prepared = prepare(&raw, &settings, cut_off, args.compensate.then_some(&robot))?;
     let mut cut = windows(&prepared.logs, args.window, args.repeats);

@@ -119,6 +119,9 @@ fn logs_are_prepared_as_recordings() {
     let lab = Lab::new();
     log_of_a_driver(&lab);
     lab.run("prepare --robot arm.toml --data logs --window 0.5 --out windows").exits(0);
+    lab.run("prepare --robot arm.toml --data logs --window 0.001 --out short").fails_with_last(&[
+        "a window of 0.001 s is shorter than the time between samples, 0.008 s",
+    ]);
     let first = lab.read("windows/0001_motion.csv");
     assert!(first.starts_with("t,q1,q2,qd1,qd2,tau1,tau2\n"), "{first}");
 }

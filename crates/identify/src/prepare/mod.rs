@@ -40,4 +40,4 @@ pub use prepared::{Prepared, prepare, unfiltered};
 pub use raw_log::RawLog;
 pub use read::read;
 pub use settings::{PrepareSettings, VelocitySource};
-pub use windows::{Window, Windows, windows};
+pub use windows::{Window, Windows, check_window, windows};

@@ -1,10 +1,15 @@
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::prepare::align::delay;
 use crate::prepare::log::PreparedLog;
+use crate::prepare::raw_log::RawLog;
+use crate::prepare::resample::median_step;
 use reachtube_files::write::atomically;
 use reachtube_recordings::{MemoryRuns, Run, column_names};
 use std::fmt::Write;
 use std::path::Path;
+
+/// Relative difference from the time between samples up to which a window counts as that long.
+const SAME_LENGTH: f64 = 1e-3;
 
 /// Prepared recordings cut into windows, which are test suites for `reachtube conform`.
 #[derive(Debug, Clone)]
@@ -28,6 +33,20 @@ pub struct Window {
     pub motion: String,
     /// The samples.
     pub log: PreparedLog,
+}
+
+/// Checks that windows of a duration \[s\] have two samples of each log.
+///
+/// # Errors
+///
+/// [`Error::ShortWindow`].
+pub fn check_window<'a>(duration: f64, logs: impl IntoIterator<Item = &'a RawLog>) -> Result<()> {
+    let is_long = |step: &f64| *step * (1.0 - SAME_LENGTH) > duration;
+    let short = logs.into_iter().find_map(|log| {
+        let step = median_step(&log.run.times).filter(is_long)?;
+        Some(Error::ShortWindow { log: log.name.clone(), window: duration, step })
+    });
+    short.map_or(Ok(()), Err)
 }
 
 /// Cuts logs into windows of a duration \[s\]; without a duration each log is one window.
@@ -185,6 +204,18 @@ mod tests {
         };
         let second: Vec<&Window> = found.windows.iter().filter(|w| w.suite == "A_w02").collect();
         assert_eq!((peak(second[0]), peak(second[1])), (50, 50));
+    }
+
+    #[test]
+    fn windows_shorter_than_the_time_between_samples_are_refused() {
+        let times: Vec<f64> = (0..5).map(|k| 0.1 * f64::from(k)).collect();
+        let run = Run::new(1, times, vec![0.0; 10], vec![0.0; 5]).unwrap();
+        let (name, file, notes) = ("slow".into(), "slow.csv".into(), vec![]);
+        let log = RawLog { name, file, motion: None, order: None, run, notes, moved: vec![] };
+        assert!(check_window(0.1, [&log]).is_ok());
+        let refused = check_window(0.02, [&log]).unwrap_err().to_string();
+        let expected = "slow: a window of 0.02 s is shorter than the time between samples, 0.1 s";
+        assert!(refused.starts_with(expected), "{refused}");
     }
 
     #[test]
