@@ -48,7 +48,7 @@ pub(super) struct Units {
     pub qd: AngleUnit,
     /// Motion per integral of the velocity in these units, where it was recognised.
     pub ratio: Option<f64>,
-    /// Whether the ratio does not fit any units.
+    /// The ratio in these units where it does not fit any that are possible.
     pub contradiction: Option<f64>,
 }
 
@@ -88,7 +88,8 @@ pub(super) fn recognise(
             },
         };
         let q = angle.map_or_else(|| by_limits(numbers), Ok)?;
-        return Ok(Units { time, q, qd: q, ratio: None, contradiction: middle });
+        let contradiction = middle.map(|ratio| ratio / expected(&(time, q, q)));
+        return Ok(Units { time, q, qd: q, ratio: None, contradiction });
     };
     let ratio = middle.map(|ratio| ratio / expected(&(unit, q, qd)));
     let units = |q, qd| Units { time: unit, q, qd, ratio, contradiction: None };

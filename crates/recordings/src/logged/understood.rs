@@ -91,8 +91,10 @@ impl Units {
             .then(|| "the velocities are in degrees/s; they were changed to rad/s".to_string());
         let contradiction = self.contradiction.map(|ratio| {
             format!(
-                "the positions move {ratio:.3e} times as far as the integrals of the velocities, \
-                 which fits no units; check both columns"
+                "with times in {} and angles in {}, the positions move {ratio:.3e} times as far as \
+                 the integrals of the velocities; check these units and both columns",
+                self.time.name(),
+                self.q.name()
             )
         });
         let differentiated = (!with_velocity)

@@ -293,3 +293,20 @@ fn the_format_of_recordings_is_no_log() {
     let (_folder, path) = written("t,q1,dq1,tau1\n0,0,0,0\n");
     assert!(!is_recording(&path, &ColumnSettings::default()));
 }
+
+#[test]
+fn a_unit_that_does_not_fit_is_noted_with_the_ratio_that_it_causes() {
+    let columns: ColumnSettings = "time_unit=ms".parse().unwrap();
+    let header = header("time", ["q{}", "qd{}", "tau{}"], 1, ",");
+    let text = Dialect { header: &header, ..PLAIN }.text();
+    let notes = read(&text, &options(None, &columns)).unwrap().notes.concat();
+    let words = "with times in ms and angles in rad, the positions move 1.000e3 times as far";
+    assert!(notes.contains(words), "{notes}");
+}
+
+#[test]
+fn a_named_torque_is_read_beside_the_columns_of_a_recording() {
+    let columns: ColumnSettings = "tau=taum{}".parse().unwrap();
+    let text = "t,q1,qd1,tau1,taum1\n0,0,1,5,7\n0.1,0.1,1,5,7\n0.2,0.2,1,5,7\n";
+    assert_eq!(read(text, &options(None, &columns)).unwrap().run.torques, [7.0; 3]);
+}
