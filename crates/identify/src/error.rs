@@ -95,20 +95,6 @@ pub enum Error {
         /// Name of the recording with the lowest sample rate.
         log: String,
     },
-    /// The times of a recording are not in seconds.
-    #[error(
-        "{}: the times look like {unit}, because the positions move {slope:.1e} times as far as \
-         the integrals of the velocities; give times in s",
-        file.display()
-    )]
-    TimeUnit {
-        /// The recording.
-        file: PathBuf,
-        /// Motion per integral of the velocity.
-        slope: f64,
-        /// The unit that the times seem to have.
-        unit: &'static str,
-    },
     /// A validation recording is also a recording of a fit.
     #[error(
         "{}: this validation recording is not held out, because the fit uses {} over the same \

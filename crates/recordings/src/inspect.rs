@@ -10,9 +10,10 @@ use crate::data_set::DataSet;
 use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
 use crate::inspect_run::{InspectedRun, range};
-use crate::notes::{copies_note, temperature_notes};
+use crate::notes::{copies_note, single_samples_note, temperature_notes};
 use crate::refusal::{Refusal, merge};
 use crate::source::{ReadOptions, RunSource};
+use crate::units::time_defect;
 
 /// A summary of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -133,7 +134,11 @@ fn read_group(
     members: &[usize],
     options: &ReadOptions,
 ) -> Vec<(usize, Summary)> {
-    let read = |index: usize| data.read(index, options).map_err(Refusal::of_recording);
+    let in_seconds = |index: usize| {
+        let run = data.read(index, options)?;
+        time_defect(&data.run_name(index), &run).map_or(Ok(run), |defect| Err(vec![defect]))
+    };
+    let read = |index: usize| in_seconds(index).map_err(Refusal::of_recording);
     let mut summaries = Vec::new();
     for (count, &index) in members.iter().enumerate() {
         match read(index) {
@@ -186,6 +191,7 @@ fn notes(data: &dyn RunSource, runs: &[Option<InspectedRun>]) -> Vec<String> {
         sound().map(|(i, run)| (data.runs()[i].file.as_str(), run.sha256.as_str())),
     ));
     notes.extend(temperature_notes(data, sound().map(|(i, run)| (i, run.has_temperatures()))));
+    notes.extend(single_samples_note(data, sound().map(|(i, run)| (i, run.samples))));
     notes
 }
 

@@ -75,6 +75,27 @@ pub(crate) fn temperature_notes(
     suites.into_iter().filter_map(note).collect()
 }
 
+/// Returns a note about the suites whose runs have one sample each. `read` gives the index of each
+/// recording that was read, and its number of samples.
+pub(crate) fn single_samples_note(
+    source: &dyn RunSource,
+    read: impl Iterator<Item = (usize, usize)>,
+) -> Option<String> {
+    let mut longest: BTreeMap<&str, usize> = BTreeMap::new();
+    for (index, samples) in read {
+        let Some(suite) = &source.runs()[index].suite else { continue };
+        let known = longest.entry(suite).or_default();
+        *known = samples.max(*known);
+    }
+    let single = longest.into_iter().filter(|(_, samples)| *samples == 1);
+    let names: Vec<&str> = single.map(|(suite, _)| suite).collect();
+    let plural = if names.len() == 1 { "suite" } else { "suites" };
+    (!names.is_empty()).then(|| {
+        let names = names.join(", ");
+        format!("{plural} {names}: the runs have one sample each, which shows no motion")
+    })
+}
+
 /// Returns a note where the SHA-256 of a file is not the one in the index.
 fn changed_note(entry: &RunEntry, sha256: &str) -> Option<String> {
     let listed = entry.sha256.as_ref()?;
@@ -89,7 +110,7 @@ fn changed_note(entry: &RunEntry, sha256: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{copies_note, run_notes, temperature_notes};
+    use super::{copies_note, run_notes, single_samples_note, temperature_notes};
     use crate::memory::MemoryRuns;
     use crate::run::Run;
     use crate::source::{ReadOptions, RunSource};
@@ -127,6 +148,18 @@ mod tests {
         assert_eq!(notes.len(), 1, "{notes:?}");
         let expected = "suite A: 1 of 2 recordings have no temperatures, for example b; ";
         assert!(notes[0].starts_with(expected), "{notes:?}");
+    }
+
+    #[test]
+    fn suites_of_one_sample_are_noted() {
+        let mut runs = MemoryRuns::default();
+        for (name, suite) in [("a", "A"), ("b", "A"), ("c", "B"), ("d", "C")] {
+            runs.push(name, Some(suite), None, run(1.0));
+        }
+        let note = |samples: [usize; 4]| single_samples_note(&runs, (0..).zip(samples));
+        assert_eq!(note([1, 3, 2, 5]), None);
+        assert!(note([1, 1, 2, 5]).unwrap().starts_with("suite A: the runs have one sample each"));
+        assert!(note([1, 3, 1, 1]).unwrap().starts_with("suites B, C: "));
     }
 
     #[test]

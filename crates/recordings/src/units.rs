@@ -19,6 +19,14 @@ const LIMIT_FACTOR: f64 = 5.0;
 /// Ratios of motion to integrated velocity that are plausible.
 const PLAUSIBLE_RATIO: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
+/// Units that times may have by mistake, with the ratio of motion to integrated velocity that they
+/// cause.
+const TIME_UNITS: [(&str, f64); 3] =
+    [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
+
+/// Relative deviation from a ratio up to which its unit is recognised.
+const UNIT_TOLERANCE: f64 = 0.3;
+
 /// Returns each joint (from 0) whose q does not follow ∫q̇ dt, with the slope of q over ∫q̇ dt
 /// where this is implausible. Joints that hardly move are skipped.
 #[must_use]
@@ -80,9 +88,26 @@ fn positions_per_integrals(run: &Run) -> Vec<Option<f64>> {
 /// No joint of a robot has a torque or force beyond this, N m or N.
 const LARGEST_TORQUE: f64 = 1e6;
 
-/// Returns the defects of a run whose values cannot be in the robot's units: q against ∫q̇ dt,
-/// positions and velocities far beyond the joints' limits, velocities of 0 of a joint that moves,
-/// and torques beyond a million N m. `path` names the run.
+/// Returns the defect of a run whose times are not in seconds: another unit scales the integrals of
+/// all velocities by one factor. Most joints that move must show it.
+pub(crate) fn time_defect(path: &Path, run: &Run) -> Option<Defect> {
+    let slopes: Vec<f64> = positions_per_integrals(run).into_iter().flatten().collect();
+    let (unit, slope) = TIME_UNITS.iter().find_map(|(unit, expected)| {
+        let agrees = |slope: &&f64| (*slope / expected - 1.0).abs() < UNIT_TOLERANCE;
+        let mut agreeing = slopes.iter().filter(agrees);
+        let (first, more) = (agreeing.next()?, agreeing.count());
+        (2 * (more + 1) > slopes.len()).then_some((unit, first))
+    })?;
+    let problem = format!(
+        "the times look like {unit}, because the positions move {slope:.1e} times as far as the \
+         integrals of the velocities"
+    );
+    Some(Defect::new(path, None, problem, "give times in s").of_kind(DefectKind::Units))
+}
+
+/// Returns the defects of a run whose values cannot be in the robot's units: the unit of the times,
+/// q against ∫q̇ dt, positions and velocities far beyond the joints' limits, velocities of 0 of a
+/// joint that moves, and torques beyond a million N m. `path` names the run.
 ///
 /// # Panics
 ///
@@ -90,6 +115,9 @@ const LARGEST_TORQUE: f64 = 1e6;
 #[must_use]
 pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
     let mut defects = ratio_defects(path, run, &robot.kinds());
+    if defects.is_empty() {
+        defects.extend(time_defect(path, run));
+    }
     let furthest = largest_magnitudes(&run.states, 2 * run.joints);
     defects.extend(position_defects(path, &furthest[..run.joints], robot));
     defects.extend(velocity_defects(path, &furthest[run.joints..], robot));
@@ -147,9 +175,9 @@ fn ratio_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
             JointKind::Prismatic => (1000.0, "mm"),
         };
         let (unit, speed) = (kinds[joint].position_unit(), kinds[joint].velocity_unit());
-        let guess = if (slope / ratio - 1.0).abs() < 0.3 {
+        let guess = if (slope / ratio - 1.0).abs() < UNIT_TOLERANCE {
             format!("q looks like {other} and qd like {speed}")
-        } else if (slope * ratio - 1.0).abs() < 0.3 {
+        } else if (slope * ratio - 1.0).abs() < UNIT_TOLERANCE {
             format!("q looks like {unit} and qd like {other}/s")
         } else {
             return None;
@@ -240,6 +268,33 @@ mod tests {
         assert_eq!(words(1.0), "");
         let dead = words(0.0);
         assert!(dead.contains("joint 3") && dead.contains("qd is 0 in every sample"), "{dead}");
+    }
+
+    #[test]
+    fn times_in_another_unit_are_a_defect() {
+        let robot = Robot::lwa4p();
+        // The second joint hardly moves, and its velocity has an offset.
+        let words = |per_second: f64, moving: usize| {
+            let state = |k: usize| {
+                let q = (0..6).map(move |j| if j < moving { 0.1 * k as f64 } else { 0.0 });
+                q.chain((0..6).map(move |j| if j < moving { 1.0 } else { 1e-4 }))
+                    .collect::<Vec<_>>()
+            };
+            let times = (0..20).map(|k| 0.1 * k as f64 * per_second).collect();
+            let states = (0..20).flat_map(state).collect();
+            let run = Run::new(6, times, states, vec![1.0; 120]).unwrap();
+            let defects = check_limits(Path::new("run.csv"), &run, &robot);
+            defects.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(words(1.0, 5), [""; 0]);
+        for (per_second, unit, ratio) in
+            [(1e3, "milliseconds", "1.0e-3"), (1e6, "microseconds", "1.0e-6")]
+        {
+            let found = words(per_second, 5);
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!(found[0].contains(&format!("look like {unit}")), "{found:?}");
+            assert!(found[0].contains(ratio) && found[0].contains("give times in s"), "{found:?}");
+        }
     }
 
     #[test]

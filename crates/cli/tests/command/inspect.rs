@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::fixture::{Lab, set_cell};
+use crate::fixture::{Lab, cell, set_cell};
 
 fn with_gaps() -> Lab {
     let lab = Lab::new();
@@ -112,6 +112,33 @@ fn logs_are_described_as_they_were_understood() {
     crate::output_schema::fits("inspect", &found);
     assert_eq!(found["logs"][0]["angle_units"], serde_json::json!(["deg", "deg"]));
     lab.run("inspect --data logs --columns q=p{}").fails_after_result(&["columns.q = \"p{}\""]);
+    lab.run("inspect --data logs --columns time_unit=s")
+        .notes("with times in s and angles in deg, the positions move 1.000e-3 times as far")
+        .exits(2);
+}
+
+#[test]
+fn times_in_milliseconds_are_refused_before_a_model_is_made() {
+    let lab = Lab::new();
+    lab.edit("data/A_2.csv", |lines| {
+        let in_milliseconds = |line: &mut String| {
+            let time = 1e3 * cell(line, 0);
+            set_cell(line, 0, &time.to_string());
+        };
+        lines.iter_mut().skip(1).for_each(in_milliseconds);
+    });
+    let words = "data/A_2.csv: the times look like milliseconds, because the positions move 1.0e-3";
+    lab.run("inspect --data data").fails_after_result(&[words, "give times in s"]);
+    lab.conform("").fails_with_last(&[words]);
+}
+
+#[test]
+fn suites_of_one_sample_are_noted() {
+    let lab = Lab::new();
+    for run in 1..=3 {
+        lab.edit(&format!("data/B_{run}.csv"), |lines| lines.truncate(2));
+    }
+    lab.run("inspect --data data").exits(0).notes("suite B: the runs have one sample each");
 }
 
 #[test]

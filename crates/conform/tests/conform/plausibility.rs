@@ -131,7 +131,6 @@ fn the_cause_of_a_wrong_reading_is_named() {
         (Written { torque: 1e3, ..RIGHT }, Torque::Motor, "in N mm"),
         (Written { torque: -1.0, ..RIGHT }, Torque::Motor, "the opposite sign"),
         (RIGHT, Torque::Compensated, "--torque motor"),
-        (Written { time: 1e3, ..RIGHT }, Torque::Motor, "in ms"),
         (Written { angle: 180.0 / std::f64::consts::PI, ..RIGHT }, Torque::Motor, "in degrees"),
         (Written { late: 25, ..RIGHT }, Torque::Motor, "about 0.1 s later"),
         (Written { swapped: Some((1, 2)), ..RIGHT }, Torque::Motor, "joints 2 and 3 are swapped"),
@@ -143,6 +142,15 @@ fn the_cause_of_a_wrong_reading_is_named() {
         assert!(cause.contains(words), "{words} is not in {cause}; {:?}", found.warnings);
         assert_eq!(Model::new(&problem, &found).warnings, found.warnings);
     }
+}
+
+#[test]
+fn times_in_milliseconds_are_refused() {
+    let (robot, written) = (arm(), Written { time: 1e3, ..RIGHT });
+    let runs = Box::new(recorded(&robot, &written));
+    let setup = Setup::new(robot, Settings::new(Torque::Motor, JOINTS)).unwrap();
+    let refused = Problem::read(setup, runs, &[], Keep::Needed, &Silent).unwrap_err().to_string();
+    assert!(refused.contains("the times look like milliseconds"), "{refused}");
 }
 
 #[test]

@@ -3,7 +3,6 @@
 use crate::error::Result;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
-use crate::prepare::time_unit::check_time_unit;
 use reachtube_logs::{Cut, Log, LogOptions, convert, marked_runs, whole_logs};
 use reachtube_recordings::{
     Error as RecordingsError, GapLimit, ReadOptions, Run, RunSource, check_limits,
@@ -41,7 +40,6 @@ pub(crate) fn marked(
         if !defects.is_empty() {
             return Err(RecordingsError::Defects(defects).into());
         }
-        check_time_unit(path, &run)?;
         let name = format!("{}_{:02}", name_of(path), number + 1);
         let (file, motion) = (path.to_path_buf(), cut.suite.clone());
         let notes = std::mem::take(&mut notes);

@@ -26,7 +26,6 @@ pub(crate) mod settings;
 mod signals;
 mod spectrum;
 pub(crate) mod survey;
-mod time_unit;
 pub(crate) mod turns;
 pub(crate) mod velocity;
 mod windows;

@@ -3,7 +3,6 @@ use crate::prepare::container::{marked, name_of, whole};
 use crate::prepare::entry::LogEntry;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
-use crate::prepare::time_unit::check_time_unit;
 use crate::prepare::turns::{add_turns, extents, missing_turns};
 use reachtube_logs::LogFiles;
 use reachtube_recordings::{
@@ -24,12 +23,12 @@ use std::sync::Arc;
 ///
 /// # Errors
 ///
-/// - [`Error::Recordings`] lists defects of the files, such as units that do not fit the robot.
+/// - [`Error::Recordings`] lists defects of the files, such as units that do not fit the robot or
+///   times that are not in seconds.
 /// - [`Error::File`] reports a path that cannot be read, [`Error::NoCsvFile`] an empty folder.
 /// - [`Error::Log`] reports a log in MCAP or rosbag2 that cannot be read.
 /// - [`Error::JointNames`] reports names that are not the robot's joints.
 /// - [`Error::GainCount`] and [`Error::Gain`] report gains that are not one for each joint.
-/// - [`Error::TimeUnit`] reports times that are not in seconds.
 pub fn read(
     entries: &[LogEntry],
     folder: &Path,
@@ -225,7 +224,7 @@ fn has_jumps(run: &Run, robot: &Robot) -> bool {
 /// Checks limits and times of a recording.
 fn check(file: &Path, run: &Run, robot: &Robot) -> Result<()> {
     match check_limits(file, run, robot) {
-        defects if defects.is_empty() => check_time_unit(file, run),
+        defects if defects.is_empty() => Ok(()),
         defects => Err(refused(defects)),
     }
 }
