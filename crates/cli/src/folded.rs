@@ -11,12 +11,15 @@ struct Group<'a> {
     /// What the messages have in common: their text without the name, and without numbers.
     common: String,
     first: &'a str,
+    /// Each name once.
     names: Vec<&'a str>,
+    /// Number of messages.
+    count: usize,
 }
 
 /// Returns messages in their order, with one line in place of messages that differ in the file or
 /// suite that they begin with, and in numbers. The line is the first message, with the count of
-/// files and the first three names.
+/// files and the first three names; of messages about one file, with their count.
 pub(crate) fn folded(messages: &[String]) -> Vec<String> {
     let mut groups: Vec<Group> = Vec::new();
     for message in messages {
@@ -24,18 +27,26 @@ pub(crate) fn folded(messages: &[String]) -> Vec<String> {
         let common = without_numbers(rest);
         let known = groups.iter_mut().find(|group| !name.is_empty() && group.common == common);
         match known {
-            Some(group) => group.names.push(name),
-            None => groups.push(Group { common, first: message, names: vec![name] }),
+            Some(group) => group.add(name),
+            None => groups.push(Group { common, first: message, names: vec![name], count: 1 }),
         }
     }
     groups.iter().map(Group::line).collect()
 }
 
-impl Group<'_> {
+impl<'a> Group<'a> {
+    fn add(&mut self, name: &'a str) {
+        self.count += 1;
+        if !self.names.contains(&name) {
+            self.names.push(name);
+        }
+    }
+
     fn line(&self) -> String {
-        let Self { first, names, .. } = self;
+        let Self { first, names, count, .. } = self;
         if names.len() == 1 {
-            return (*first).into();
+            let more = format!(" ({count} times)");
+            return format!("{first}{}", if *count > 1 { &more } else { "" });
         }
         let (kind, skipped) = match names[0].strip_prefix(SUITE) {
             Some(_) => ("suites", SUITE.len()),
@@ -111,6 +122,18 @@ mod tests {
                 "data is not used",
             ]
         );
+    }
+
+    #[test]
+    fn each_file_is_counted_once() {
+        let [first, second, other] = [
+            "a.csv: joint 1: q moves 5 times as far",
+            "a.csv: joint 2: q moves 6 times as far",
+            "b.csv: joint 2: q moves 6 times as far",
+        ];
+        assert_eq!(of(&[first, second]), ["a.csv: joint 1: q moves 5 times as far (2 times)"]);
+        let found = of(&[first, second, other]);
+        assert_eq!(found, ["a.csv: joint 1: q moves 5 times as far (2 files: a.csv, b.csv)"]);
     }
 
     #[test]
