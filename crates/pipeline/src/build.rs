@@ -74,7 +74,7 @@ pub fn build(
     say: &mut dyn FnMut(&Choice),
     progress: &dyn Progress,
 ) -> Result<Built> {
-    given.check_numbers()?;
+    given.check(robot.joint_count(), torque)?;
     let mut chooser = Chooser { choices: given.clone(), made: Vec::new(), say, progress };
     let settings = PrepareSettings { torque: Some(torque), ..given.prepare_settings() };
     settings.gain_of_each_joint(robot.joint_count())?;

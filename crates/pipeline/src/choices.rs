@@ -216,39 +216,6 @@ impl Choices {
         choices
     }
 
-    /// Checks the numbers, whose ranges the options of a front end know already.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Choice`] for the first that is out of range.
-    pub(crate) fn check_numbers(&self) -> Result<()> {
-        let above = "a finite number above 0";
-        let single = [
-            ("horizon", self.horizon, above),
-            ("cut-off", self.cut_off, above),
-            ("max-gap", self.max_gap, above),
-            ("largest-ratio", self.largest_ratio, "a number above 0"),
-            ("largest-growth", self.largest_growth, "a number of 1 or more"),
-            ("largest-outside", self.largest_outside, "a part of the rows, from 0 to 1"),
-            ("pull", self.pull, "a weight from 0 to 1"),
-        ];
-        let is_wrong = |key: &str, value: f64| match key {
-            "largest-ratio" => value.is_nan() || value <= 0.0,
-            "largest-growth" => value.is_nan() || value < 1.0,
-            "largest-outside" | "pull" => !(0.0..=1.0).contains(&value),
-            _ => !(value.is_finite() && value > 0.0),
-        };
-        let wrong = single.into_iter().find_map(|(key, value, needed)| {
-            value.filter(|value| is_wrong(key, *value)).map(|value| (key, value, needed))
-        });
-        match wrong {
-            None => Ok(()),
-            Some((key, value, needed)) => {
-                Err(Error::Choice { key, value: value.to_string(), needed })
-            }
-        }
-    }
-
     /// Returns how recordings are read and prepared, but for the cut-off.
     pub(crate) fn prepare_settings(&self) -> PrepareSettings {
         PrepareSettings {
@@ -305,20 +272,6 @@ fn comment(sentence: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_out_of_range_are_named() {
-        for (text, expected) in [
-            ("horizon = -1.0", "horizon = -1; give a finite number above 0"),
-            ("cut-off = nan", "cut-off = NaN"),
-            ("largest-outside = 5.0", "largest-outside = 5; give a part"),
-        ] {
-            let error = Choices::from_toml(text).unwrap().check_numbers().unwrap_err().to_string();
-            assert!(error.contains(expected), "{text}: {error}");
-        }
-        let text = "horizon = 0.3\nlargest-growth = inf\npull = 0.0";
-        Choices::from_toml(text).unwrap().check_numbers().unwrap();
-    }
 
     #[test]
     fn choices_are_read_as_they_were_written() {

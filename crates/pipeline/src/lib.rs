@@ -4,6 +4,7 @@ mod acceptance;
 mod allowance;
 mod build;
 mod carried_over;
+mod checked_choices;
 mod choices;
 mod chooser;
 mod compared;

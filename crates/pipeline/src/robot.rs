@@ -88,6 +88,11 @@ impl Evidence<'_> {
 
     /// Chooses the robot, with the findings of an identification.
     fn chosen(&self, described: &Robot, given: Option<bool>) -> Result<Nominal> {
+        let is_input = self.torque == Torque::Compensated;
+        if is_input {
+            // No robot is identified from its input.
+            described.check_physical()?;
+        }
         let is_physical = described.check_physical().map(|_| ());
         let own = match (given, &is_physical) {
             (Some(true), _) | (_, Err(_)) => None,
@@ -97,7 +102,6 @@ impl Evidence<'_> {
                 Some((nominal, error))
             }
         };
-        let is_input = self.torque == Torque::Compensated;
         match own {
             // Compensated torques are the input of the robot that is described.
             Some((nominal, error)) if given == Some(false) || error < GOOD || is_input => {

@@ -6,7 +6,7 @@ use clap::Args;
 use reachtube::conform::Group;
 use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::page::{Assets, built_pages};
-use reachtube::pipeline::{Built, Choice, Choices, build};
+use reachtube::pipeline::{Built, Choice, Choices, Error as PipelineError, build};
 use reachtube::recordings::Torque;
 use reachtube::robot::{Lock, Robot};
 use reachtube::write;
@@ -99,10 +99,11 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let journal = args.out.join(JOURNAL);
     let built = build(&robot, torque, &choices, Some(&journal), &mut say, &bar);
     drop(bar);
-    let built = built.inspect_err(|_| {
+    let built = built.map_err(|error| {
         // A model that was made says it among its findings.
         impossible.iter().for_each(|warning| output::warn(warning));
         forget(&journal);
+        in_settings(error, args)
     })?;
     output::notes(&built.notes);
     let mut written = Vec::new();
@@ -128,6 +129,22 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print_verdict(&text, &outcome)?;
     }
     Ok(outcome)
+}
+
+/// Names the settings file in an error of a choice that it makes.
+fn in_settings(error: PipelineError, args: &Arguments) -> PipelineError {
+    let is_option = |key: &str| match key {
+        "fit" => !args.fit.is_empty(),
+        "horizon" => args.horizon.is_some(),
+        "max-gap" => args.max_gap.is_some(),
+        _ => false,
+    };
+    match (&args.settings, &error) {
+        (Some(path), PipelineError::Choice { key, .. }) if !is_option(key) => {
+            PipelineError::Settings { path: path.clone(), message: error.to_string() }
+        }
+        _ => error,
+    }
 }
 
 /// Removes the journal: the job is done, or refused.

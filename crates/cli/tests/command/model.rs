@@ -238,9 +238,35 @@ fn a_horizon_cuts_logs_for_conform_and_for_what_follows() {
     assert_eq!((&check["conformant"], &check["rows"]), (&true.into(), &model["proof"]["rows"]));
     lab.run("report --model model.json --data logs --out again").exits(0);
     lab.run("export --model model.json --data logs/a.csv --to cora --out cora").exits(0);
-    for wrong in ["--horizon 0", "--horizon 0.2 --until 1", "--horizon 900"] {
-        let data = "--robot pendulum.toml --data logs --torque motor";
-        lab.run(&format!("conform {data} {wrong}")).exits(2);
+    let data = "--robot pendulum.toml --data logs --torque motor";
+    for (wrong, problem) in [
+        ("--horizon 0", "above 0"),
+        ("--horizon 0.2 --until 1", "cannot be used with"),
+        ("--horizon 900", "no recording is as long"),
+        ("--horizon 0.001", "a window of 0.001 s is shorter than the time between samples, 0.0"),
+        ("--horizon 0.2 --suites a", "windows of logs: there is no suite \"a\""),
+    ] {
+        let run = lab.run(&format!("conform {data} {wrong}")).exits(2);
+        assert!(run.stderr.contains(problem), "{wrong}: {}", run.stderr);
+    }
+    lab.run(&format!("conform {data} --horizon 0.2 --suites b*")).notes("windows of logs are used");
+}
+
+#[test]
+fn choices_that_cannot_be_are_refused_with_their_file() {
+    let lab = lab();
+    let given = "robot = \"pendulum.toml\"\ndata = [\"logs\"]\n";
+    for (choices, problem) in [
+        ("torque = \"motor\"\nhorizon = -1.0", "given.toml: horizon = -1; give a finite"),
+        ("torque = \"motor\"\nallowance = [0.1]", "given.toml: allowance = [0.1]; give 3 radii"),
+        ("torque = \"compensated\"\nidentify = true", "given.toml: identify = true; give false"),
+        ("torque = \"compensated\"\ncut-off = 5.0", "given.toml: cut-off = 5; give none with"),
+        ("torque = \"motor\"\ngains = [1.0, 2.0]", "gains: 2 given; give one for each of the 1"),
+        ("torque = \"motor\"\ngains = [nan]", "gains: gain 1 is NaN"),
+    ] {
+        lab.write("given.toml", format!("{given}{choices}\n"));
+        let run = lab.run("model --settings given.toml --out arm").exits(2);
+        assert!(run.stderr.contains(problem), "{choices}: {}", run.stderr);
     }
 }
 
