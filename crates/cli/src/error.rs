@@ -191,7 +191,8 @@ pub(crate) enum Error {
     },
     /// `export` has no model for a tool.
     #[error(
-        "only mjcf and urdf take --robot; name a model that `model` or `conform` wrote with --model"
+        "only mjcf, urdf and armour take --robot; name a model that `model` or `conform` wrote \
+         with --model"
     )]
     NoModel,
     /// `export --update` for a tool whose files are written whole.
@@ -200,6 +201,14 @@ pub(crate) enum Error {
          sara-shield; leave it out"
     )]
     NothingToUpdate,
+    /// `export` does not use an option for what it writes.
+    #[error("--{option} has no effect on an export to {tool}; leave it out")]
+    NotForTool {
+        /// The option, without dashes.
+        option: &'static str,
+        /// What the command writes.
+        tool: String,
+    },
     /// `export` has no recorded input.
     #[error(
         "an export to {tool} needs the recorded input; name the recordings with --data and the \

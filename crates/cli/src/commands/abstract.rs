@@ -65,7 +65,7 @@ pub(crate) struct Arguments {
     pub print: bool,
     /// Largest number of parts that --box is cut into [default: 4 to 1000, for some 20 s on two
     /// cores]
-    #[arg(long, hide_short_help = true, value_name = "COUNT")]
+    #[arg(long, hide_short_help = true, value_name = "COUNT", requires = "operating_box")]
     pub most_boxes: Option<usize>,
     /// Write the abstraction to this JSON file
     #[arg(long, value_name = "FILE")]

@@ -29,7 +29,7 @@ Exit codes: 0 every recording can be used, 2 some are refused.";
 
 /// Summarise a data set: its suites, runs, sample times, ranges and drift
 #[derive(Debug, Args)]
-#[command(after_help = HELP)]
+#[command(after_help = HELP, mut_arg("lock", |lock| lock.requires("robot")))]
 pub(crate) struct Arguments {
     /// Robot, for the units of its joints [default: revolute joints]
     #[arg(long)]

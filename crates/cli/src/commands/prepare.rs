@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     pub compensate: bool,
     /// Meaning of the recorded torques that are compensated [default: motor]
-    #[arg(long, value_parser = choice::<Torque>(TORQUES))]
+    #[arg(long, value_parser = choice::<Torque>(TORQUES), requires = "compensate")]
     pub torque: Option<Torque>,
     /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
     /// also first=0, time_unit=ms and angle=deg

@@ -128,6 +128,30 @@ fn a_robot_is_written_for_simulators() {
 }
 
 #[test]
+fn options_without_an_effect_are_refused() {
+    let lab = lab("");
+    let model = "--model model.json --data data --to cora";
+    for (options, option, tool) in [
+        ("--robot arm.toml --to mjcf --data data", "--data", "MuJoCo"),
+        ("--robot arm.toml --to mjcf --suites A", "--suites", "MuJoCo"),
+        ("--model model.json --to mjcf --until 0.1", "--until", "MuJoCo"),
+        ("--model model.json --to mjcf --lock axis1=0", "--lock", "MuJoCo"),
+        ("--robot arm.toml --to urdf --input range", "--input", "URDF"),
+        ("--robot arm.toml --to urdf --capsules arm.toml", "--capsules", "URDF"),
+        (&format!("{model} --uncertainty 0.1"), "--uncertainty", "CORA"),
+        (&format!("{model} --torque-limits 9,9"), "--torque-limits", "CORA"),
+        (&format!("{model} --capsules arm.toml"), "--capsules", "CORA"),
+        (&format!("{model} --lock axis1=0"), "--lock", "CORA"),
+    ] {
+        let refused = format!("{option} has no effect on an export to {tool}; leave it out");
+        lab.run(&format!("export {options} --out out")).fails_with(&[&refused]);
+    }
+    lab.run("export --robot arm.toml --to cora --data data --out out")
+        .fails_with(&["only mjcf, urdf and armour take --robot"]);
+    assert!(!lab.path("out").exists());
+}
+
+#[test]
 fn the_shield_gets_a_proved_radius_and_its_own_file_is_changed_in_place() {
     let lab = lab("");
     let capsule = |link: usize| {

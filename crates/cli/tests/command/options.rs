@@ -108,6 +108,19 @@ fn a_wrong_command_line_is_an_error() {
 }
 
 #[test]
+fn options_that_need_another_are_refused_without_it() {
+    let lab = Lab::new();
+    for (arguments, needed) in [
+        ("inspect --data data --lock axis1=0", "--robot"),
+        ("prepare --robot arm.toml --data data --torque link --out windows", "--compensate"),
+        ("abstract --robot arm.toml --most-boxes 9", "--box"),
+    ] {
+        let run = lab.run(arguments).exits(2);
+        assert!(run.stderr.contains("required") && run.stderr.contains(needed), "{run:#?}");
+    }
+}
+
+#[test]
 fn numbers_that_do_not_fit() {
     let lab = Lab::new();
     lab.conform("--weights 0,1").fails_with(&["weight 1 is 0", "between 1e-9 and 1e9"]);

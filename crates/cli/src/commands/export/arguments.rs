@@ -139,6 +139,44 @@ pub(crate) enum Target {
     Tool(Tool),
 }
 
+impl Target {
+    /// Returns its name for messages.
+    fn name(self) -> String {
+        match self {
+            Self::Mjcf => "MuJoCo".into(),
+            Self::Urdf => "URDF".into(),
+            Self::SaraShield => "the SaRA shield".into(),
+            Self::Armour => "ARMOUR".into(),
+            Self::Tool(tool) => tool.to_string(),
+        }
+    }
+}
+
+/// Refuses options that have no effect on what is written.
+pub(super) fn refuse_unused(args: &Arguments) -> Result<()> {
+    let to = args.to;
+    let has_recordings = matches!(to, Target::Tool(_) | Target::SaraShield);
+    let has_capsules = matches!(to, Target::SaraShield | Target::Armour);
+    let is_armour = matches!(to, Target::Armour);
+    // The joints of a URDF that is changed may be locked in the model.
+    let has_locks = args.robot.is_some() || !args.update.is_empty();
+    let options = [
+        ("data", args.data.is_some(), has_recordings),
+        ("suites", !args.suites.is_empty(), has_recordings),
+        ("until", args.until.is_some(), has_recordings),
+        ("max-gap", args.max_gap.is_some(), has_recordings),
+        ("input", args.input.is_some(), matches!(to, Target::Tool(_))),
+        ("capsules", args.capsules.is_some(), has_capsules),
+        ("uncertainty", args.uncertainty.is_some(), is_armour),
+        ("torque-limits", !args.torque_limits.is_empty(), is_armour),
+        ("lock", !args.lock.lock.is_empty(), has_locks && !matches!(to, Target::SaraShield)),
+    ];
+    match options.into_iter().find(|(_, is_given, is_used)| *is_given && !is_used) {
+        Some((option, ..)) => Err(Error::NotForTool { option, tool: to.name() }),
+        None => Ok(()),
+    }
+}
+
 /// Writes files to these paths. The tables of one case are the same for every tool, and stay.
 pub(super) fn write_all<'a>(
     paths: &[PathBuf],

@@ -12,7 +12,7 @@ use reachtube::{Robot, write};
 use serde_json::{Value, json};
 
 pub(crate) use arguments::Arguments;
-use arguments::{Target, load_robot, open, write_all};
+use arguments::{Target, load_robot, open, refuse_unused, write_all};
 
 use crate::error::{Error, Result};
 use crate::file_names;
@@ -38,6 +38,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if args.update.len() > most {
         return Err(Error::NothingToUpdate);
     }
+    refuse_unused(args)?;
     let updated = |robot: &Robot| match args.update.first() {
         Some(path) => updated_urdf_files(robot, path, &args.lock.lock),
         None => urdf_files(robot),
