@@ -238,6 +238,9 @@ pub(crate) enum Error {
     /// No model could be made of logs.
     #[error(transparent)]
     Pipeline(Box<PipelineError>),
+    /// The library reported an error about windows that the command cut.
+    #[error("{}", .0.written_for(FrontEnd::Windows))]
+    Windows(Box<reachtube::Error>),
     /// The library reported an error.
     #[error("{}", .0.written_for(FrontEnd::CommandLine))]
     Library(Box<reachtube::Error>),
@@ -258,7 +261,7 @@ impl Error {
             Self::Log(error) => log_kind(error),
             Self::Export(_) => "export",
             Self::Verify(error) => verify_kind(error),
-            Self::Library(error) => kind(error),
+            Self::Library(error) | Self::Windows(error) => kind(error),
             _ => "setting",
         }
     }

@@ -105,7 +105,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     for (path, text) in &safety {
         write::atomically(path, |file| file.write_all(text.as_bytes()))?;
     }
-    let mut page = conform_command::page_of(&answer)?;
+    let mut page = conform_command::page_of(&answer, FrontEnd::CommandLine)?;
     page.link_to_held_out();
     output::wrote(&report_files::write_page(&page, Assets::Inside, &pages[0])?);
     let summary = answer.summary(FrontEnd::CommandLine);

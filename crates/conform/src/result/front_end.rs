@@ -5,6 +5,8 @@
 pub enum FrontEnd {
     /// Users of the command write `--until 1.204`.
     CommandLine,
+    /// Users of the command that cuts recordings into windows write `--horizon 1.204` for `until`.
+    Windows,
     /// Users of the Python package write `until=1.204`.
     Python,
     /// Users of a file of choices write `until = 1.204`.
@@ -46,10 +48,16 @@ impl FrontEnd {
         self != Self::Choices || CHOICES.contains(&setting)
     }
 
+    /// Returns the name of the setting that does in a front end what `setting` does in others.
+    pub(crate) fn name_of(self, setting: &str) -> &str {
+        if self == Self::Windows && setting == "until" { "horizon" } else { setting }
+    }
+
     /// Returns a setting with its value, as users of the front end write it.
     #[must_use]
     pub(crate) fn setting(self, name: &str, value: Option<&str>) -> String {
         match (self, value) {
+            (Self::Windows, _) => Self::CommandLine.setting(self.name_of(name), value),
             (Self::CommandLine, None | Some("true")) => format!("--{name}"),
             // A value that begins with a minus would be taken for an option.
             (Self::CommandLine, Some(value)) if value.starts_with('-') => {
@@ -84,7 +92,7 @@ fn python_value(name: &str, value: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::FrontEnd::{CommandLine, Python};
+    use super::FrontEnd::{CommandLine, Python, Windows};
 
     #[test]
     fn each_front_end_writes_settings_in_its_own_form() {
@@ -107,5 +115,7 @@ mod tests {
             assert_eq!(CommandLine.setting(name, value), command);
             assert_eq!(Python.setting(name, value), python);
         }
+        assert_eq!(Windows.setting("until", Some("1.204")), "--horizon 1.204");
+        assert_eq!(Windows.setting("notion", Some("hull")), "--notion hull");
     }
 }

@@ -62,7 +62,25 @@ impl Remedy {
         let Self { setting, value, effect } = self;
         // Files of earlier versions have the name that the option had then.
         let setting = if setting == "model" { "paper-model" } else { setting };
+        let own = front_end.name_of(setting);
+        if own != setting {
+            return Self::new(own, value).written_for(front_end);
+        }
         let value = Some(value.as_str()).filter(|value| !value.is_empty());
         format!("`{}` {effect}", front_end.setting(setting, value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_are_shortened_by_their_horizon() {
+        let remedy = Remedy::until(0.28);
+        let words = "`--until 0.280` uses only the samples before.";
+        assert_eq!(remedy.written_for(FrontEnd::CommandLine), words);
+        let words = "`--horizon 0.280` cuts recordings into windows of this length, s.";
+        assert_eq!(remedy.written_for(FrontEnd::Windows), words);
     }
 }

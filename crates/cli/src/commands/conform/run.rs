@@ -9,7 +9,7 @@ use reachtube::write;
 
 use super::arguments::Arguments;
 use super::settings::{basis, settings};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::global::global;
 use crate::outcome::Outcome;
 use crate::output;
@@ -25,7 +25,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::claim(&report_files::page_in(folder))?;
     }
     let bar = Progress::new();
-    let mut answer = job.run(&bar)?;
+    let mut answer = job.run(&bar).map_err(|error| match Error::from(error) {
+        Error::Library(error) if args.horizon.is_some() => Error::Windows(error),
+        error => error,
+    })?;
     drop(bar);
     if let Some(preparation) = preparation {
         answer.model = answer.model.with_preparation(preparation);
@@ -43,7 +46,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         written.push(path);
     }
     // The answer is printed even if the page cannot be written.
-    let page = args.report.as_ref().map(|folder| report(&answer, folder)).transpose();
+    let report = |folder: &PathBuf| report(&answer, front_end(args), folder);
+    let page = args.report.as_ref().map(report).transpose();
     written.extend(page.as_ref().ok().and_then(Option::as_deref));
     let outcome = Outcome::of_model(answer.holds(), &answer.model);
     if json || global().verbose {
@@ -52,7 +56,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     match json {
         true => output::print_json_text(&answer.model.to_json_with_findings())?,
         false if global().verbose => {
-            output::print_verdict(&answer.report().to_string(), &outcome)?;
+            let report = answer.report().written_for(front_end(args));
+            output::print_verdict(&report, &outcome)?;
         }
         false => output::print_verdict(&summary(&answer, &written, args)?.to_string(), &outcome)?,
     }
@@ -60,9 +65,14 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(outcome)
 }
 
+/// Returns how settings are written: without `--until`, which windows exclude.
+fn front_end(args: &Arguments) -> FrontEnd {
+    if args.horizon.is_some() { FrontEnd::Windows } else { FrontEnd::CommandLine }
+}
+
 /// Returns the answer on a few lines, with the files that were written.
 fn summary(answer: &Answer, written: &[&Path], args: &Arguments) -> Result<Summary> {
-    let mut summary = answer.summary(FrontEnd::CommandLine);
+    let mut summary = answer.summary(front_end(args));
     if !written.is_empty() {
         let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
         summary.fact("wrote", names.join(", "));
@@ -113,15 +123,14 @@ fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
 }
 
 /// Returns the page about the recordings that the sets were found for, from what is in memory.
-pub(crate) fn page_of(answer: &Answer) -> Result<Page> {
+pub(crate) fn page_of(answer: &Answer, front_end: FrontEnd) -> Result<Page> {
     let Answer { model, problem, .. } = answer;
     let (check, reach) = (answer.check(), answer.reach()?);
-    let sources =
-        Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
+    let sources = Sources { model, problem, reach: &reach, check: &check, front_end };
     Ok(page(&sources)?)
 }
 
 /// Writes the page, and returns where it is.
-fn report(answer: &Answer, folder: &Path) -> Result<PathBuf> {
-    report_files::write_page(&page_of(answer)?, Assets::Inside, folder)
+fn report(answer: &Answer, front_end: FrontEnd, folder: &Path) -> Result<PathBuf> {
+    report_files::write_page(&page_of(answer, front_end)?, Assets::Inside, folder)
 }
