@@ -64,7 +64,7 @@ impl OpenedCheck {
 
     /// Prints notes as [`print_notes`] does.
     pub(crate) fn print_notes(&self, args: &DataArguments) {
-        print_notes(&self.model, &self.problem, args.until);
+        print_notes(&self.model, &self.problem, args.until, "--until changes the limit");
     }
 
     /// Prints a warning for each reason why the sets say less of the robot than of the model.
@@ -97,13 +97,13 @@ impl OpenedCheck {
     }
 }
 
-/// Prints notes on the recordings, and up to which time they are used if that is the model's limit.
-/// A check says it in its verdict.
-pub(crate) fn print_notes(model: &Model, problem: &Problem, until: Option<f64>) {
+/// Prints notes on the recordings, and up to which time they are used if that is the model's limit,
+/// with what changes it. A check says it in its verdict.
+pub(crate) fn print_notes(model: &Model, problem: &Problem, until: Option<f64>, change: &str) {
     if let (None, Some(until)) = (until, model.settings.until) {
         output::note(&format!(
             "samples later than {until} s after the first are not used, as when the sets were \
-             found; --until changes the limit"
+             found; {change}"
         ));
     }
     output::notes(&problem.recordings().notes);

@@ -57,7 +57,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         job.run(&bar)?
     };
     let Opened { model, problem, .. } = &verified.opened;
-    print_notes(model, problem, until);
+    let change = "until = SECONDS in the scenario changes the limit";
+    print_notes(model, problem, until, change);
     verified.warnings().iter().for_each(|warning| output::warn(&warning.text));
     let outcome = match verified.answer() {
         Answer::Safe => Outcome::Done,

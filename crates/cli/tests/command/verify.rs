@@ -53,6 +53,16 @@ fn a_far_obstacle_is_safe_with_a_proved_distance_and_a_picture() {
 }
 
 #[test]
+fn the_limit_of_the_model_is_noted_with_the_key_that_changes_it() {
+    let lab = lab();
+    lab.conform("--until 0.2 --out model.json").exits(0);
+    let run = verify(&lab, "", &obstacle(FAR), "").exits(0);
+    run.notes("when the sets were found; until = SECONDS in the scenario changes the limit");
+    let run = verify(&lab, "until = 0.1", &obstacle(FAR), "").exits(0);
+    assert!(!run.stderr.contains("changes the limit"), "{}", run.stderr);
+}
+
+#[test]
 fn a_motion_that_touches_is_a_witness() {
     let lab = lab();
     let run = verify(&lab, "suites = [\"A\"]", &obstacle(IN_THE_WAY), "").exits(1);
