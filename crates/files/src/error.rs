@@ -29,6 +29,12 @@ pub enum Error {
         /// The operating system's reason.
         source: std::io::Error,
     },
+    /// A file is where a folder is needed.
+    #[error("{}: this is a file, but a folder is needed; give another name", path.display())]
+    NotFolder {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file exists that reachtube did not write.
     #[error(
         "{}: a file of this name exists, and it carries no mark of reachtube, so it is not \

@@ -53,7 +53,8 @@ pub fn atomically(
 /// # Errors
 ///
 /// [`Error::Write`] when `path` is a folder, or when no file can be created in its folder. Where
-/// that folder is missing, the nearest existing one above it is checked.
+/// that folder is missing, the nearest existing one above it is checked; [`Error::NotFolder`] if
+/// that is a file.
 pub fn try_at(path: &Path) -> Result<()> {
     let attempt = || {
         if path.is_dir() {
@@ -64,9 +65,11 @@ pub fn try_at(path: &Path) -> Result<()> {
         }
         let path = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         remove_left_over(folder_of(&path));
-        let nearest = folder_of(&path).ancestors().find(|folder| folder.exists());
-        temporary_in(nearest.unwrap_or(Path::new("."))).map(drop)
+        temporary_in(nearest(&path)).map(drop)
     };
+    if !nearest(path).is_dir() {
+        return Err(Error::NotFolder { path: nearest(path).to_path_buf() });
+    }
     attempt().map_err(|source| Error::Write { path: path.to_path_buf(), source })
 }
 
@@ -101,6 +104,12 @@ fn is_temporary(path: &Path) -> bool {
 /// Returns whether `path` is a device or a pipe, which is written to directly.
 fn is_special(path: &Path) -> bool {
     path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir())
+}
+
+/// Returns the folder of a file, or the nearest path above it that exists.
+fn nearest(path: &Path) -> &Path {
+    let nearest = folder_of(path).ancestors().find(|folder| folder.exists());
+    nearest.unwrap_or(Path::new("."))
 }
 
 fn folder_of(path: &Path) -> &Path {

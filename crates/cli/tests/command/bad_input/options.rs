@@ -90,7 +90,7 @@ pub(super) const CASES: &[Case] = &[
     case(
         "a folder that is a file",
         conform!("--report arm.toml"),
-        &["arm.toml/report.html: cannot write"],
+        &["arm.toml: this is a file, but a folder is needed"],
     ),
     case(
         "a file of others",
