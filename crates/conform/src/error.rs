@@ -17,8 +17,8 @@ pub enum Error {
     /// A nominal model that cannot be fitted.
     #[error("the nominal model cannot be fitted: {0}")]
     Fit(String),
-    /// A setting has another number of values than the robot has states.
-    #[error("{given} {setting} values; there are {needed} states, q then q̇")]
+    /// A setting has another number of values than the robot's states and inputs ask for.
+    #[error("{given} {setting} values; give {needed}: {order}")]
     SettingCount {
         /// The setting.
         setting: &'static str,
@@ -26,14 +26,16 @@ pub enum Error {
         given: usize,
         /// How many it must have.
         needed: usize,
+        /// What they are, in their order.
+        order: &'static str,
     },
     /// A value of a setting is not finite or outside its range.
-    #[error("{setting} {index} is {value}; it must be {}", range(*low, *high))]
+    #[error("{setting}{} is {value}; it must be {}", number(*index), range(*low, *high))]
     SettingRange {
         /// The setting.
         setting: &'static str,
-        /// Which of its values, from 1.
-        index: usize,
+        /// Which of its values, from 1; `None` for a setting with one value.
+        index: Option<usize>,
         /// The value.
         value: f64,
         /// The lowest value allowed.
@@ -193,6 +195,10 @@ impl Error {
     pub fn written_for(&self, front_end: FrontEnd) -> String {
         advised(self.to_string(), &self.settings(), front_end)
     }
+}
+
+fn number(index: Option<usize>) -> String {
+    index.map_or_else(String::new, |index| format!(" {index}"))
 }
 
 fn range(low: f64, high: f64) -> String {

@@ -154,6 +154,41 @@ fn live_run(log: &mut LiveLog, run: &Run) -> Result<Run, String> {
             torques.extend_from_slice(sample.torque());
         }
     }
+    let delay = log.delay();
     log.clear();
+    if times.is_empty() {
+        return Err(format!(
+            "it lasts {:.3} s, but the filter of the model's recordings needs samples from \
+             {delay:.3} s after each one and as long before it; give longer recordings",
+            run.duration()
+        ));
+    }
     Run::new(run.joints, times, states, torques).map_err(|problem| problem.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use reachtube_recordings::{Preparation, Torque};
+
+    use super::*;
+
+    #[test]
+    fn a_recording_shorter_than_the_filter_is_refused_with_both_times() {
+        let robot = Robot::lwa4p();
+        let known = Preparation {
+            torque: Torque::Motor,
+            gains: vec![],
+            cut_off: Some(5.0),
+            window: None,
+            max_gap: None,
+            columns: Default::default(),
+            log: Default::default(),
+        };
+        let mut log = LiveLog::new(&robot, &known, VelocitySource::Recorded, 0.01, 0.02).unwrap();
+        let times = (0..21).map(|k| 0.01 * f64::from(k)).collect();
+        let run = Run::new(6, times, vec![0.0; 252], vec![0.0; 126]).unwrap();
+        let refused = live_run(&mut log, &run).unwrap_err();
+        assert!(refused.starts_with("it lasts 0.200 s, but the filter"), "{refused}");
+        assert!(refused.contains(&format!("from {:.3} s after", log.delay())), "{refused}");
+    }
 }

@@ -34,7 +34,7 @@ pub enum SampleError {
     /// Too much time passed since the sample before.
     #[error(
         "t is {time} s after a sample at {previous} s: a gap longer than {longest} s, over which \
-         the input is not known; allow longer gaps, or begin anew after it"
+         the input is not known; begin anew after it, or allow longer gaps"
     )]
     Gap {
         /// Its time, s.

@@ -109,7 +109,7 @@ fn json_lines_are_samples_too_and_what_is_wrong_is_named_with_its_line() {
     let cases = [
         (header.to_string() + &row("0", "0") + &row("0.01", "nan"), "standard input:3: q1 is NaN"),
         (header.to_string() + &row("0", "0") + &row("0", "0"), "standard input:3: t is 0 s after"),
-        (header.to_string() + &row("0", "0") + &row("1", "0"), "standard input:3: t is 1 s after"),
+        (header.to_string() + &row("0", "0") + &row("1", "0"), "or allow longer gaps (--max-gap)"),
         (header.to_string() + &row("0", "x"), "standard input:2: \"x\" is not a number"),
         ("t,q1,qd1,tau1\n".into(), "standard input:1: the header has no column q2"),
         (sample(0.0, "0.1"), "standard input:1: 1 positions; the model has 2 joints"),
@@ -121,8 +121,11 @@ fn json_lines_are_samples_too_and_what_is_wrong_is_named_with_its_line() {
     }
     let run = monitor(&lab, "", header).exits(2);
     assert!(run.stderr.contains("no two samples"), "{}", run.stderr);
+    let run = monitor(&lab, "--step 0.01 --horizon 0.001", &all).exits(2);
+    let needed = "horizon is 0.001; it must be between 0.01 and ";
+    assert!(run.stderr.contains(needed), "{}", run.stderr);
     let run = monitor(&lab, "--step 0.01 --horizon 0.1 --every 0.2", &all).exits(2);
-    assert!(run.stderr.contains("time between windows 1 is 0.2"), "{}", run.stderr);
+    assert!(run.stderr.contains("time between windows is 0.2"), "{}", run.stderr);
 }
 
 /// An interrupt ends with the summary, although no line comes.

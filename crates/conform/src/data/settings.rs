@@ -323,20 +323,20 @@ impl Settings {
     pub fn validate(&self, joints: usize) -> Result<()> {
         self.check_stiction()?;
         if let Weights::Given(weights) = &self.weights {
-            check_list("weight", weights, 2 * joints, 1e-9..=1e9)?;
+            check_list("weight", weights, (2 * joints, STATES), 1e-9..=1e9)?;
         }
         if let Noise::Fixed(radii) = &self.noise {
-            check_list("noise radius", radii, 2 * joints, 0.0..=1e9)?;
+            check_list("noise radius", radii, (2 * joints, STATES), 0.0..=1e9)?;
         }
         if let Some(radii) = &self.sensor_noise {
-            check_list("sensor noise radius", radii, 2 * joints, 0.0..=1e9)?;
+            check_list("sensor noise radius", radii, (2 * joints, STATES), 0.0..=1e9)?;
         }
         if let Some(Tolerance { position, velocity }) = self.explain {
             for (index, value) in [position, velocity].into_iter().enumerate() {
-                check_range("tolerance", index, value, &(0.0..=f64::MAX))?;
+                check_range("tolerance", Some(index + 1), value, &(0.0..=f64::MAX))?;
             }
         }
-        self.until.map_or(Ok(()), |until| check_range("until", 0, until, &(0.0..=f64::MAX)))
+        self.until.map_or(Ok(()), |until| check_range("until", None, until, &(0.0..=f64::MAX)))
     }
 }
 
@@ -350,25 +350,29 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 ///
 /// As [`Settings::validate`].
 pub(crate) fn check_allowance(allowance: &[f64], joints: usize) -> Result<()> {
-    check_list("allowance", allowance, 3 * joints, 0.0..=1e9)
+    let order = "X0 for q, then for q̇, then U";
+    check_list("allowance", allowance, (3 * joints, order), 0.0..=1e9)
 }
+
+/// The order of values of all states.
+const STATES: &str = "one per state, q then q̇";
 
 fn check_list(
     setting: &'static str,
     values: &[f64],
-    needed: usize,
+    (needed, order): (usize, &'static str),
     range: RangeInclusive<f64>,
 ) -> Result<()> {
     if values.len() != needed {
-        return Err(Error::SettingCount { setting, given: values.len(), needed });
+        return Err(Error::SettingCount { setting, given: values.len(), needed, order });
     }
     let mut pairs = values.iter().enumerate();
-    pairs.try_for_each(|(index, value)| check_range(setting, index, *value, &range))
+    pairs.try_for_each(|(index, value)| check_range(setting, Some(index + 1), *value, &range))
 }
 
 fn check_range(
     setting: &'static str,
-    index: usize,
+    index: Option<usize>,
     value: f64,
     range: &RangeInclusive<f64>,
 ) -> Result<()> {
@@ -376,5 +380,5 @@ fn check_range(
         return Ok(());
     }
     let (low, high) = (*range.start(), *range.end());
-    Err(Error::SettingRange { setting, index: index + 1, value, low, high })
+    Err(Error::SettingRange { setting, index, value, low, high })
 }

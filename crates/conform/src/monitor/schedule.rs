@@ -51,7 +51,7 @@ impl Schedule {
         let Self { step, horizon, every, longest_gap } = *self;
         let check = |setting, value: f64, low: f64, high: f64| match (low..=high).contains(&value) {
             true => Ok(()),
-            false => Err(Error::SettingRange { setting, index: 1, value, low, high }),
+            false => Err(Error::SettingRange { setting, index: None, value, low, high }),
         };
         check("time between samples", step, 1e-6, 10.0)?;
         check("horizon", horizon, step, MOST_SAMPLES * step)?;

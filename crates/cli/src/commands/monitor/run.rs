@@ -6,7 +6,7 @@ use reachtube::conform::Error as ConformError;
 use reachtube::conform::monitor::Schedule;
 use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
-use reachtube::recordings::DataSet;
+use reachtube::recordings::{DataSet, SampleError};
 use reachtube::robot::Robot;
 
 use crate::commands::monitor::arguments::Arguments;
@@ -198,8 +198,12 @@ impl Watch<'_> {
     fn judge(&mut self, number: u64, sample: &Sample) -> Result<()> {
         let Some(monitor) = &mut self.monitor else { return Ok(()) };
         let Sample { t, q, qd, tau } = sample;
-        let left =
-            monitor.push(*t, q, qd, tau).map_err(|problem| wrong(number, &problem.to_string()))?;
+        let refused = |problem: SampleError| {
+            let option = matches!(problem, SampleError::Gap { .. });
+            let option = if option { " (--max-gap)" } else { "" };
+            wrong(number, &format!("{problem}{option}"))
+        };
+        let left = monitor.push(*t, q, qd, tau).map_err(refused)?;
         self.events.left(left)?;
         self.events.alarms(monitor.alarms())?;
         if let Some(every) = self.args.gauge_every
