@@ -121,6 +121,8 @@ fn json_lines_are_samples_too_and_what_is_wrong_is_named_with_its_line() {
     }
     let run = monitor(&lab, "", header).exits(2);
     assert!(run.stderr.contains("no two samples"), "{}", run.stderr);
+    let run = monitor(&lab, "--step 0.01", header).exits(2);
+    assert!(run.stderr.contains("no sample was compared"), "{}", run.stderr);
     let run = monitor(&lab, "--step 0.01 --horizon 0.001", &all).exits(2);
     let needed = "horizon is 0.001; it must be between 0.01 and ";
     assert!(run.stderr.contains(needed), "{}", run.stderr);

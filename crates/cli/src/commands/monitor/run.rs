@@ -22,6 +22,9 @@ const FIRST: usize = 17;
 /// Lines that may wait to be judged.
 const WAITING: usize = 1024;
 
+/// How samples end that no interrupt ends.
+const END_OF_INPUT: &str = "end of input";
+
 /// What comes from outside.
 enum Message {
     Line(std::io::Result<String>),
@@ -55,6 +58,11 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
             let words = ended.as_ref().copied().unwrap_or("error");
             watch.events.summary(monitor.found(), words)?;
             let totals = monitor.found().totals();
+            if totals.rows == 0 && ended.as_ref().is_ok_and(|end| *end == END_OF_INPUT) {
+                let late = monitor.delay();
+                let problem = format!("no sample was compared; answers come {late:.3} s late");
+                return Err(wrong(1, &problem));
+            }
             Outcome::of(totals.left == 0 && totals.alarms == 0)
         }
     };
@@ -106,7 +114,7 @@ impl Watch<'_> {
                 Message::Line(Ok(line)) => line,
                 Message::Line(Err(error)) => {
                     return match error.kind() {
-                        std::io::ErrorKind::UnexpectedEof => Ok("end of input"),
+                        std::io::ErrorKind::UnexpectedEof => Ok(END_OF_INPUT),
                         _ => Err(wrong(number + 1, &error.to_string())),
                     };
                 }
@@ -116,7 +124,7 @@ impl Watch<'_> {
                 self.take(number, &line)?;
             }
         }
-        Ok("end of input")
+        Ok(END_OF_INPUT)
     }
 
     fn take(&mut self, number: u64, line: &str) -> Result<()> {
