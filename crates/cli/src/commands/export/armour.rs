@@ -23,6 +23,9 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         torque_limits: args.torque_limits.clone(),
     };
     let armour = Armour::new(&robot, &capsules, &settings)?;
+    if !robot.warms_by().is_empty() {
+        output::warn("The bounds of friction hold at the reference of its law of warming only.");
+    }
     let paths: Vec<PathBuf> = armour.files.iter().map(|file| args.out.join(&file.name)).collect();
     write_all(&paths, armour.files.iter())?;
     let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
