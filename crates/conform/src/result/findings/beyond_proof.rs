@@ -43,19 +43,19 @@ impl Model {
         reasons.into_iter().map(warning).collect()
     }
 
-    /// Returns a warning if the friction of joints is not the robot's own at all times, with which
-    /// stops are proved: it changes with their warmth, or a fit changed it along the nominal
-    /// motions alone.
+    /// Returns a warning if joints may have less friction than the robot's description, with which
+    /// stops are proved: it changes with their warmth, or a fit took a part of it off the inputs.
     #[must_use]
     pub fn friction_beyond_proof(&self) -> Option<Finding> {
         let warms = self.robot.joints.iter().any(|joint| joint.friction.warming.is_some());
-        let corrected = self
-            .correction
-            .as_ref()
-            .is_some_and(|own| own.joints.iter().any(|joint| *joint != JointCorrection::default()));
-        let why = match (warms, corrected) {
+        let falls = |joint: &JointCorrection| {
+            let parts = [&joint.coulomb[..], &[joint.warm_up, joint.warm_up_coulomb]].concat();
+            parts.iter().any(|part| *part < 0.0)
+        };
+        let lowered = self.correction.as_ref().is_some_and(|all| all.joints.iter().any(falls));
+        let why = match (warms, lowered) {
             (true, _) => "it changes as the joints warm up",
-            (false, true) => "the fit's correction of it is not part of them",
+            (false, true) => "the fit found less of it in some joints",
             (false, false) => return None,
         };
         let text = format!("Stops are proved with the friction in the robot's description: {why}.");
