@@ -51,18 +51,18 @@ pub(crate) fn stop(
             StopQuestion { brakes: &brakes, category: &category, every, table, recorded };
         let study = stop_study(&problem, &tube.sets, &question)?;
         let robot = problem.robot();
+        let warnings = &model.beyond_proof_of_stops(&problem);
         let mut files = Vec::new();
         if table {
-            let page = StopPage { robot, model: &model, brakes: &brakes, study: &study };
+            let (model, brakes, study) = (&model, &brakes, &study);
+            let page = StopPage { robot, model, brakes, study, warnings };
             let mut html = Vec::new();
             write_stop_html(&page, &mut html)?;
             let html = String::from_utf8_lossy(&html).into_owned();
             files.push((reachtube::page::STOP_PAGE_FILE.to_string(), html));
         }
         let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
-        let mut findings = study.findings.clone();
-        findings.extend(model.beyond_proof(&problem));
-        findings.extend(model.friction_beyond_proof());
+        let findings = [&study.findings[..], warnings].concat();
         Ok(kept(json!(study), &list(&findings), &study.text(&unit), &files))
     })
 }

@@ -48,6 +48,9 @@ pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
     of_built(built, &mut own.lead);
     own.verdict.words = as_sentence(&built.verdict());
     own.verdict.useful = Some(built.is_useful());
+    // What follows for new motions follows from all that was held out, and not from an excerpt.
+    let new_motions = vec![as_sentence(&format!("new motions: {}", built.held_out.next_motion))];
+    own.trust.clone_from(&new_motions);
     let findings = built.findings.iter().map(|finding| finding.written_for(FrontEnd::Choices));
     own.verdict.warnings.splice(0..0, findings);
     let remedies = built.remedies.iter();
@@ -60,6 +63,7 @@ pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
     let which =
         format!(", an excerpt of {all} that were held out, with up to 12 that leave the sets");
     let mut other = excerpt(built, &built.shown_held_out, &which)?;
+    other.trust = new_motions;
     other.verdict.words = format!("Held out: {}. {}", built.held_out_words(), other.verdict.words);
     own.link_to_held_out();
     other.link_to_own("page");

@@ -3,11 +3,13 @@
 
 use super::chart::{Chart, chart_svg, chart_svg_of_height};
 use super::error::Error;
+use super::html::warning_list;
 use super::identified_arm::arm_svgs;
 use super::identified_charts::{RESIDUAL_HEIGHT, load_chart, torque_charts, viscous_chart};
 use super::identified_parameters::parameter_svg;
-use super::skeleton::{document, named_rows, pair_of_lists, section, wide_table};
+use super::skeleton::{document, named_rows, section, wide_table};
 use super::tables;
+use super::terms::Explained;
 use super::text::Text;
 use maud::{Markup, PreEscaped, html};
 use reachtube_identify::{
@@ -35,6 +37,7 @@ pub fn write_identified_html(found: &Identification, out: &mut impl Write) -> Re
     let joints: Vec<&str> =
         found.description.joints.iter().map(|joint| joint.name.as_str()).collect();
     let body = html! {
+        @if !found.warnings.is_empty() { (section("Warnings", &warning_list(&found.warnings))) }
         @if let Ok(robot) = Robot::from_description(&found.description) {
             (section("The robot", &arm(&robot)?))
         }
@@ -44,10 +47,11 @@ pub fn write_identified_html(found: &Identification, out: &mut impl Write) -> Re
             (section("Friction", &friction(found)?))
         }
         (section("Inertial parameters", &inertia(found, &joints, kinds)?))
-        (section("Recordings", &pair_of_lists([
-            ("Preprocessing", "yes", &found.changes),
-            ("Warnings", "no", &found.warnings),
-        ])))
+        @if !found.changes.is_empty() {
+            (section("Recordings", &html! {
+                ul.yes { @for change in &found.changes { li { (Explained(change)) } } }
+            }))
+        }
     };
     let title = format!("{}: identified", found.description.name);
     let subtitle = "Gravity, friction and inertia identified from recordings";

@@ -3,14 +3,15 @@
 use std::io::Write;
 
 use maud::{Markup, PreEscaped, html};
-use reachtube_conform::Model;
 use reachtube_conform::result::Table;
+use reachtube_conform::{Finding, Model};
 use reachtube_robot::{JointKind, Robot};
 use reachtube_scalar::number::{at_least, significant};
 use reachtube_verify::{AnnexRow, Brakes, StopStudy, annex_table, recorded_table};
 
 use crate::chart::{Chart, Series, chart_svg};
 use crate::error::Error;
+use crate::html::warning_list;
 use crate::skeleton::{document, laid_out, section, verdict};
 use crate::terms::Explained;
 use crate::text::Text;
@@ -35,6 +36,8 @@ pub struct StopPage<'a> {
     pub brakes: &'a Brakes,
     /// The stops.
     pub study: &'a StopStudy,
+    /// Why the stops say less of the robot than of the model.
+    pub warnings: &'a [Finding],
 }
 
 /// Writes the page as one HTML file that needs no other file and no script.
@@ -50,10 +53,16 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
     let of = |category: u8| -> Vec<AnnexRow> {
         rows.iter().filter(|row| row.category == category).cloned().collect()
     };
-    let is_fine = study.outside().is_none() && study.is_proved();
+    let class = match (study.outside(), study.is_proved() && page.warnings.is_empty()) {
+        (Some(_), _) => "bad",
+        (None, true) => "ok",
+        (None, false) => "doubtful",
+    };
+    let warnings: Vec<String> = page.warnings.iter().map(|found| found.text.clone()).collect();
     let sentence = study.findings.first().map_or("", |verdict| &verdict.text);
     let body = html! {
-        (verdict(if is_fine { "ok" } else { "bad" }, sentence))
+        (verdict(class, sentence))
+        @if !warnings.is_empty() { (section("Warnings", &warning_list(&warnings))) }
         (section("Category 0", &html! {
             p { "Drives off and brakes on at once, at full speed, extension and load. One joint \
                  moves when the stop begins; the three with the greatest distance are listed." }
@@ -70,7 +79,7 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
         @if !study.recorded.is_empty() {
             (section("Recorded stops", &html! {
                 p { "Measured, and proved from the first recorded state, for the three joints of \
-                     each recording that move the most." }
+                     each recording that move the most, and any other that is not within." }
                 (laid_out(&recorded_table(&study.recorded, &unit)))
             }))
         }
@@ -114,7 +123,7 @@ fn by_speed(rows: &[AnnexRow], unit: &str) -> Table {
 /// Returns distances and times over speed, at the greatest load.
 fn charts(rows: &[AnnexRow], unit: &str) -> Result<Markup, Error> {
     let mut joints: Vec<&str> = Vec::new();
-    for row in rows {
+    for row in rows.iter().filter(|row| row.is_proved()) {
         if !joints.contains(&row.joint.as_str()) {
             joints.push(&row.joint);
         }
@@ -131,7 +140,8 @@ fn charts(rows: &[AnnexRow], unit: &str) -> Result<Markup, Error> {
             Series { points, dots: false, colour }
         };
         let series: Vec<Series> = COLOURS.into_iter().enumerate().map(of_extension).collect();
-        let zero = Series { points: vec![(0.0, 0.0)], dots: true, colour: COLOURS[0] };
+        // The axes begin at 0.
+        let zero = Series { points: vec![(0.0, 0.0)], dots: false, colour: COLOURS[0] };
         Chart {
             title: joint.into(),
             x: "speed [%]".into(),

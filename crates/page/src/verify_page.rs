@@ -15,6 +15,7 @@ use crate::html::warning_list;
 use crate::interactive::in_script;
 use crate::library::compressed_library;
 use crate::skeleton::{document, laid_out, section, verdict};
+use crate::terms::Explained;
 use crate::text::Text;
 
 /// The file name of the page.
@@ -80,12 +81,14 @@ struct ObstacleData<'a> {
 /// Fails where `out` fails.
 pub fn write_verify_html(page: &VerifyPage, out: &mut impl Write) -> Result<(), Error> {
     let VerifyPage { all, body, scene, warnings } = *page;
-    let (sentence, tables) = summary(all, body, scene);
+    let (sentences, tables) = summary(all, body, scene);
+    let (sentence, others) = sentences.split_first().expect("there is a verdict");
     let texts: Vec<String> = warnings.iter().map(|warning| warning.text.clone()).collect();
     let order = worst_first(all);
     let worst = order.first().copied();
     let content = html! {
-        (verdict(class(worst.map(|worst| worst.answer)), &sentence))
+        (verdict(class(worst.map(|worst| worst.answer), warnings), sentence))
+        @for other in others { p { (Explained(other)) } }
         @if !warnings.is_empty() { (section("Warnings", &warning_list(&texts))) }
         @if let Some(worst) = worst {
             (section("The worst motion", &shown(worst, page)))
@@ -111,9 +114,9 @@ pub fn write_verify_html(page: &VerifyPage, out: &mut impl Write) -> Result<(), 
 }
 
 /// Returns the colour of a verdict.
-fn class(answer: Option<Answer>) -> &'static str {
+fn class(answer: Option<Answer>, warnings: &[Finding]) -> &'static str {
     match answer {
-        Some(Answer::Safe) => "ok",
+        Some(Answer::Safe) if warnings.is_empty() => "ok",
         Some(Answer::Unsafe) => "bad",
         _ => "doubtful",
     }

@@ -88,7 +88,8 @@ impl HeldOut {
         Some(Finding { numbers, ..warning(Code::HeldOutRates, &text) })
     }
 
-    /// Compares a model with prepared recordings. Returns the windows that leave its sets, too.
+    /// Compares a model with prepared recordings. Returns the runs that leave its sets furthest,
+    /// too.
     fn new(
         answer: &Answer,
         recordings: &Prepared,
@@ -109,8 +110,12 @@ impl HeldOut {
         match answer.model.check(windows).run(&Silent) {
             Ok(check) => {
                 let verdict = &check.verdict;
-                let left = verdict.suites.iter().filter(|suite| suite.violations.count > 0);
-                let outside = left.map(|suite| suite.suite.clone()).take(MOST_SHOWN).collect();
+                let worst =
+                    verdict.suites.iter().filter_map(|suite| suite.violations.worst.as_ref());
+                let mut worst: Vec<_> = worst.collect();
+                worst.sort_by(|a, b| b.excess.total_cmp(&a.excess));
+                let outside =
+                    worst.iter().map(|worst| worst.run.clone()).take(MOST_SHOWN).collect();
                 let held_out = Self {
                     windows: count,
                     rows: verdict.rows,

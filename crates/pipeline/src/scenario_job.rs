@@ -126,10 +126,11 @@ impl Verified {
     /// more than they were proved for, and links without a capsule.
     #[must_use]
     pub fn warnings(&self) -> Vec<Finding> {
-        let mut warnings = self.opened.model.beyond_proof(&self.opened.problem);
-        if self.motions.iter().any(|one| one.stops.is_some()) {
-            warnings.extend(self.opened.model.friction_beyond_proof());
-        }
+        let Opened { model, problem, .. } = &self.opened;
+        let mut warnings = match self.motions.iter().any(|one| one.stops.is_some()) {
+            true => model.beyond_proof_of_stops(problem),
+            false => model.beyond_proof(problem),
+        };
         warnings.extend(links_without_capsule(&self.body, &self.scene));
         warnings
     }

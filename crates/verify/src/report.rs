@@ -49,16 +49,21 @@ fn links(v: &Verification) -> Table {
     }
 }
 
-/// Returns the verdict about the worst motion as a sentence, and tables of the motions with the
-/// worst first, of the stops and of the margins.
+/// Returns the verdict about the worst motion and what would decide as sentences, and tables of the
+/// motions with the worst first, of the stops and of the margins.
 #[must_use]
-pub fn summary(all: &[Verification], body: &Body, scene: &Scene) -> (String, Vec<Table>) {
+pub fn summary(all: &[Verification], body: &Body, scene: &Scene) -> (Vec<String>, Vec<Table>) {
     let order = worst_first(all);
-    let sentence = findings(all, body, scene).into_iter().next().map(|verdict| verdict.text);
-    let stops = triggers(all).map(|(table, _)| table);
+    let mut sentences: Vec<String> =
+        findings(all, body, scene).into_iter().map(|finding| finding.text).collect();
+    let stops = triggers(all).map(|(table, words)| {
+        sentences.push(words);
+        table
+    });
     let first = Table { title: "motions, the worst first".into(), ..motions(&order) };
     let tables = [first].into_iter().chain(stops).chain([margins(all, body)]);
-    (sentence.unwrap_or_default(), tables.collect())
+    let tables = tables.collect();
+    (sentences, tables)
 }
 
 fn motions(order: &[&Verification]) -> Table {

@@ -76,9 +76,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let category = Category::numbered(args.category, &brakes, &origin, &sets.input_set)?;
     let recorded = args.stops.as_ref().map(DataSet::open).transpose()?;
     opened.print_notes(&args.model.data);
-    opened.warn_beyond_proof();
-    let friction = opened.model.friction_beyond_proof();
-    friction.iter().for_each(|warning| output::warn(&warning.text));
+    let warnings = &opened.model.beyond_proof_of_stops(&opened.problem);
+    warnings.iter().for_each(|warning| output::warn(&warning.text));
     let question = StopQuestion {
         brakes: &brakes,
         category: &category,
@@ -91,7 +90,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         stop_study(&opened.problem, sets, &question)?
     };
     if let Some(path) = &page {
-        let content = StopPage { robot, model: &opened.model, brakes: &brakes, study: &study };
+        let (model, brakes, study) = (&opened.model, &brakes, &study);
+        let content = StopPage { robot, model, brakes, study, warnings };
         let mut html = Vec::new();
         write_stop_html(&content, &mut html)?;
         write::atomically(path, |file| file.write_all(&html))?;

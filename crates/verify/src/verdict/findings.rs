@@ -6,7 +6,7 @@ use reachtube_conform::result::{Code, Severity};
 use crate::body::body::Body;
 use crate::scene::scenario::Scene;
 use crate::verdict::decide::Advice;
-use crate::verdict::stop_verdict::{lower, stop_verdict};
+use crate::verdict::stop_verdict::{closest_found, lower, stop_verdict};
 use crate::verdict::verification::{Answer, Verification};
 
 /// Returns the findings: the verdict about the worst motion, then what would decide about each
@@ -92,14 +92,13 @@ fn verdict(worst: &Verification, [until, links]: [&str; 2], scene: &Scene) -> Fi
             (Severity::Info, Code::Safe, text)
         }
         (_, Some(pair)) => {
-            let found = worst.closest.as_ref();
             let text = format!(
                 "undecided: no distance{keep} is proved between the link of {} and `{}` at {:.3} s \
-                 ({case}); the closest motion found stays {} m away.",
+                 ({case}){}.",
                 pair.link,
                 pair.obstacle,
                 pair.time,
-                found.map_or("?".into(), |found| format!("{:.4}", found.distance)),
+                closest_found(worst),
             );
             (Severity::Warning, Code::Undecided, text)
         }

@@ -33,14 +33,13 @@ pub(crate) fn stop_verdict(worst: &Verification, keep: &str, links: &str) -> Opt
     };
     let (link, obstacle, from) = (&stop.link, &stop.obstacle, stop.from);
     if worst.answer != Answer::Safe {
-        let why = if stop.distance == f64::NEG_INFINITY {
-            "no standstill is proved".into()
+        let (why, found) = if stop.distance == f64::NEG_INFINITY {
+            ("no standstill is proved".into(), String::new())
         } else {
-            format!("no distance{keep} is proved between the link of {link} and `{obstacle}`")
+            let why =
+                format!("no distance{keep} is proved between the link of {link} and `{obstacle}`");
+            (why, closest_found(worst))
         };
-        let found = worst.closest.as_ref().map_or(String::new(), |found| {
-            format!("; the closest motion found stays {:.4} m away", found.distance)
-        });
         return Some(format!(
             "undecided: after a stop of category {category} at {from:.3} s, {why} ({case}){found}."
         ));
@@ -62,6 +61,16 @@ pub(crate) fn stop_verdict(worst: &Verification, keep: &str, links: &str) -> Opt
         "safe: up to a stop of category {category} {when} and until standstill, {links} \
          stays{keep} clear; the smallest proved distance is {closest} ({case})."
     ))
+}
+
+/// Returns how close the motion comes that was found, to follow a sentence; empty without one.
+pub(crate) fn closest_found(worst: &Verification) -> String {
+    worst.closest.as_ref().map_or(String::new(), |found| {
+        format!(
+            "; on the closest motion found, the link of {} stays {:.4} m from `{}`",
+            found.link, found.distance, found.obstacle
+        )
+    })
 }
 
 /// Formats a proved distance with four decimals, rounded down.

@@ -43,10 +43,17 @@ impl Model {
         reasons.into_iter().map(warning).collect()
     }
 
-    /// Returns a warning if joints may have less friction than the robot's description, with which
-    /// stops are proved: it changes with their warmth, or a fit took a part of it off the inputs.
+    /// Returns the warnings of [`beyond_proof`](Self::beyond_proof) for stops, which have another
+    /// reason: joints may have less friction than the robot's description, where it changes with
+    /// their warmth, or a fit took a part of it off the inputs.
     #[must_use]
-    pub fn friction_beyond_proof(&self) -> Option<Finding> {
+    pub fn beyond_proof_of_stops(&self, problem: &Problem) -> Vec<Finding> {
+        let mut all = self.beyond_proof(problem);
+        all.extend(self.less_friction());
+        all
+    }
+
+    fn less_friction(&self) -> Option<Finding> {
         let warms = self.robot.joints.iter().any(|joint| joint.friction.warming.is_some());
         let falls = |joint: &JointCorrection| {
             let parts = [&joint.coulomb[..], &[joint.warm_up, joint.warm_up_coulomb]].concat();
