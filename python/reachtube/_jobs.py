@@ -102,8 +102,9 @@ def _take(
 def fold_of(job: Job, part: Part) -> bytes:
     """Fold the recordings of a task, or take what an earlier job finished."""
     store = None
-    if part.resume is not None:
-        rows = json.dumps([job.digest(), part.rows]).encode()
+    # A recording without a digest may be another one by now.
+    if part.resume is not None and all(row.sha256 is not None for _, row in part.rows):
+        rows = json.dumps([job.digest(), part.base, part.rows]).encode()
         store = f"{part.resume}{hashlib.sha256(rows).hexdigest()}.fold"
         known = read(store, part.storage)
         if known is not None:
@@ -114,8 +115,10 @@ def fold_of(job: Job, part: Part) -> bytes:
                 pass
     fold = fleet_of(job).fold()
     summaries: list[dict[str, Any]] = []
+    sound = True
     for place, row in part.rows:
         summary, defects = _take(fold, *read_one(place, row, part))
+        sound = sound and not defects
         if part.summaries is not None:
             sha256, samples, duration = summary or (None, None, None)
             numbers = {"sha256": sha256, "samples": samples, "duration": duration}
@@ -124,7 +127,8 @@ def fold_of(job: Job, part: Part) -> bytes:
     content = fold.to_bytes()
     if part.summaries is not None:
         _write_summaries(part, summaries)
-    if store is not None:
+    # What is wrong with a recording may be mended.
+    if store is not None and sound:
         write(store, content, part.storage)
     return content
 

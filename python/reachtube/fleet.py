@@ -130,7 +130,8 @@ def conform(
         Whether recordings with defects end the job, which then names all of them, or are left
         out and counted in the model.
     resume
-        A folder for finished tasks, from which a job that was stopped goes on.
+        A folder for finished tasks, from which a job that was stopped goes on, where the
+        manifest has the SHA-256 of each recording of a task.
     summaries
         A folder for what was read of each recording, as a Parquet data set.
     storage_options
@@ -205,7 +206,8 @@ def check(
     on_defect
         Whether recordings with defects end the job, or are left out and counted.
     resume
-        A folder for finished tasks, from which a job that was stopped goes on.
+        A folder for finished tasks, from which a job that was stopped goes on, where the
+        manifest has the SHA-256 of each recording of a task.
     summaries
         A folder for what was read of each recording, as a Parquet data set.
     storage_options

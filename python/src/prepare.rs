@@ -82,6 +82,8 @@ fn cut(
     let mut cut = windows(&prepared.logs, window, repeats);
     cut.simulated = any_simulated(raw.iter().map(|log| &*log.file));
     cut.noise = noise_left(&raw.iter().collect::<Vec<&RawLog>>(), Some(cut_off));
+    let origin = |log: &RawLog| (log.name.clone(), log.run.sha256.clone());
+    cut.origins = raw.iter().map(origin).collect();
     let runs = cut.runs();
     if cut.windows.is_empty() {
         let what = match window {

@@ -54,6 +54,7 @@ struct IndexRow {
     simulated: Option<bool>,
     #[serde(default, deserialize_with = "noise")]
     noise: Option<Vec<f64>>,
+    origin: Option<String>,
     order: Option<String>,
     repeat: Option<String>,
 }
@@ -81,7 +82,7 @@ impl IndexRow {
             sha256: filled(self.sha256),
             simulated: self.simulated.unwrap_or(false),
             noise: self.noise,
-            origin: None,
+            origin: filled(self.origin),
             at_rest: false,
             order,
             line,

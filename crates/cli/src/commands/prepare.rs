@@ -94,6 +94,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let mut cut = windows(&prepared.logs, args.window, args.repeats);
     cut.simulated = any_simulated(raw.iter().map(|log| &*log.file));
     cut.noise = noise_left(&raw.iter().collect::<Vec<&RawLog>>(), Some(cut_off));
+    let origin = |log: &RawLog| (log.name.clone(), log.run.sha256.clone());
+    cut.origins = raw.iter().map(origin).collect();
     if cut.windows.is_empty() {
         return Err(nothing_left(args, &prepared.logs));
     }

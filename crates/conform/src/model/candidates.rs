@@ -55,7 +55,10 @@ impl Model {
             let Candidate { initial_set, input_set, noise_set, data, .. } = candidate;
             let sets = UncertaintySets { initial_set, input_set, noise_set };
             let is_new = sets != self.sets() && !others.contains(&sets);
-            if is_new && !digests.is_disjoint(&held_out(&other, &data)) {
+            let own = held_out(&other, &data);
+            // Where recordings are not listed, they may be the same.
+            let may_share = digests.is_empty() || own.is_empty() || !digests.is_disjoint(&own);
+            if is_new && may_share {
                 others.push(sets);
             }
         }
@@ -75,9 +78,11 @@ impl Model {
     }
 }
 
-/// Returns the SHA-256 of the recordings that calibrated a model.
+/// Returns the SHA-256 of the recordings that calibrated a model, and of the logs that they were
+/// cut from.
 fn held_out(calibration: &Calibration, data: &DataRecord) -> BTreeSet<String> {
     let motions: BTreeSet<&str> = calibration.held_out().collect();
     let suites = data.suites.iter().filter(|suite| motions.contains(suite.motion()));
-    suites.flat_map(|suite| &suite.runs).map(|run| run.sha256.clone()).collect()
+    let runs = suites.flat_map(|suite| &suite.runs);
+    runs.flat_map(|run| [Some(&run.sha256), run.origin.as_ref()]).flatten().cloned().collect()
 }

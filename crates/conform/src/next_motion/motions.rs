@@ -1,7 +1,10 @@
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use crate::data::recordings::Recordings;
 use crate::data::suite::Suite;
+
+/// Durations are the same up to this part.
+const SAME_END: f64 = 1e-6;
 
 /// The motion of each suite: its own name where the source names none.
 pub(crate) struct Motions<'a> {
@@ -16,9 +19,29 @@ impl<'a> Motions<'a> {
         Self::some(recordings, |_| true)
     }
 
-    /// Leaves out suites in which the robot rests: a bound for motions does not hold for poses.
-    pub(crate) fn moving(recordings: &'a Recordings) -> Self {
-        Self::some(recordings, |suite| !suite.is_at_rest())
+    /// Takes what a bound may count: suites in which the robot moves, since a bound for motions does
+    /// not hold for poses. Motions that share a recording are one.
+    pub(crate) fn independent(recordings: &'a Recordings) -> Self {
+        let mut moving = Self::some(recordings, |suite| !suite.is_at_rest());
+        let mut known: HashMap<&str, &str> = HashMap::new();
+        let mut same: HashMap<&str, &str> = HashMap::new();
+        let suites = recordings.suites.iter().filter(|suite| !suite.is_at_rest());
+        for (suite, (_, motion)) in suites.zip(&moving.of_suites) {
+            for run in suite.runs.iter().filter(|run| !run.sha256.is_empty()) {
+                let first = *known.entry(&run.sha256).or_insert(motion);
+                let (first, own) = (followed(&same, first), followed(&same, motion));
+                if first != own {
+                    same.insert(own, first);
+                }
+            }
+        }
+        moving.of_suites.iter_mut().for_each(|(_, motion)| *motion = followed(&same, motion));
+        moving
+    }
+
+    /// Returns the motion of a suite that counts.
+    pub(crate) fn of_named_suite(&self, suite: &str) -> Option<&'a str> {
+        self.of_suites.iter().find(|(name, _)| *name == suite).map(|(_, motion)| *motion)
     }
 
     fn some(recordings: &'a Recordings, takes: impl Fn(&Suite) -> bool) -> Self {
@@ -50,10 +73,7 @@ impl<'a> Motions<'a> {
 
     /// Returns the number of distinct motions of some suites, named one by one.
     pub(crate) fn count_of<'s>(&self, suites: impl Iterator<Item = &'s str>) -> usize {
-        let motion = |name: &str| {
-            self.of_suites.iter().find(|(suite, _)| *suite == name).map(|(_, motion)| *motion)
-        };
-        suites.filter_map(motion).collect::<BTreeSet<_>>().len()
+        suites.filter_map(|suite| self.of_named_suite(suite)).collect::<BTreeSet<_>>().len()
     }
 
     /// Returns the distinct motions of some suites, named one by one, that `is_asked`.
@@ -68,6 +88,17 @@ impl<'a> Motions<'a> {
         motions.into_iter().filter(|motion| is_asked(motion)).collect()
     }
 
+    /// Returns whether one motion lasts longer than all others, so that it alone decides how long
+    /// the cost counts.
+    pub(crate) fn longest_is_one(&self, recordings: &Recordings) -> bool {
+        let ends = |suite: &Suite| suite.runs.iter().map(|run| run.duration).fold(0.0, f64::max);
+        let all: Vec<f64> = recordings.suites.iter().map(ends).collect();
+        let longest = all.iter().copied().fold(0.0, f64::max);
+        let longest = (0..all.len()).filter(|suite| all[*suite] >= (1.0 - SAME_END) * longest);
+        let motions: BTreeSet<&str> = longest.map(|suite| self.of_suite(suite)).collect();
+        motions.len() == 1 && self.count() > 1
+    }
+
     /// Returns what weakens a statement that counts motions, to follow its basis.
     pub(crate) fn caveat(&self) -> &'static str {
         if self.are_named {
@@ -77,4 +108,13 @@ impl<'a> Motions<'a> {
              is too optimistic where suites share one"
         }
     }
+}
+
+/// Returns the first motion that shares a recording with a motion.
+fn followed<'a>(same: &HashMap<&'a str, &'a str>, motion: &'a str) -> &'a str {
+    let mut motion = motion;
+    while let Some(first) = same.get(motion) {
+        motion = first;
+    }
+    motion
 }

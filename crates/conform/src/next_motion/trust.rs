@@ -3,6 +3,8 @@
 //! "These sets enclose these runs" is a fact. Anything about the next motion is statistical, and
 //! needs motions that are independent and alike. Several suites of one motion count once.
 
+use std::collections::BTreeSet;
+
 use reachtube_scalar::number::counted;
 use serde::{Deserialize, Serialize};
 
@@ -67,7 +69,7 @@ impl Trust {
     #[must_use]
     pub fn of_fit(problem: &Problem, tight: &[Witness]) -> Self {
         let recordings = problem.recordings();
-        let motions = Motions::new(recordings);
+        let motions = Motions::independent(recordings);
         if motions.count() > 1 && recordings.are_of_one_log() {
             return Self::of_one_log("scenario");
         }
@@ -133,11 +135,23 @@ impl Trust {
         is_proved: bool,
     ) -> Self {
         let motions = Motions::new(problem.recordings());
-        let count = calibration.gauges.len();
+        let [held_out, copied] = independent(problem.recordings(), calibration);
+        let count = held_out.len();
         if !is_proved {
             let basis = "no calibration bound: the scaled sets were not proved to enclose the \
                          recordings";
             return Self::unknown(count, basis.into());
+        }
+        if count == 0 {
+            return Self::unknown(0, "the robot rests in all recordings held out".into());
+        }
+        if !copied.is_empty() {
+            let basis = format!(
+                "no calibration bound: motions that were held out have copies among the others \
+                 ({})",
+                copied.join(", ")
+            );
+            return Self::unknown(count, basis);
         }
         let seen = &problem.robot().description().identified_from;
         let suites = problem.recordings().suites_among(seen);
@@ -214,7 +228,7 @@ impl Trust {
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
     #[must_use]
     pub(crate) fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
-        let motions = Motions::moving(recordings);
+        let motions = Motions::independent(recordings);
         if motions.count() == 0 {
             return Self::unknown(0, "the robot rests in all recordings".into());
         }
@@ -260,6 +274,21 @@ impl Trust {
     }
 }
 
+/// Returns the held-out motions that a bound may count, and which have a recording in common with
+/// the other motions.
+fn independent<'a>(recordings: &'a Recordings, calibration: &Calibration) -> [Vec<&'a str>; 2] {
+    let (named, counted) = (Motions::new(recordings), Motions::independent(recordings));
+    let is_held_out = |motion: &str| calibration.gauges.iter().any(|gauge| gauge.motion == motion);
+    let (mut held_out, mut others) = (BTreeSet::new(), BTreeSet::new());
+    for (index, suite) in recordings.suites.iter().enumerate() {
+        let Some(motion) = counted.of_named_suite(&suite.entry.name) else { continue };
+        let of = if is_held_out(named.of_suite(index)) { &mut held_out } else { &mut others };
+        of.insert(motion);
+    }
+    let copied = held_out.intersection(&others).copied().collect();
+    [held_out.into_iter().collect(), copied]
+}
+
 /// Returns the condition of the scenario bound's theorem that a problem does not meet: the sets
 /// must solve a convex program in which each motion adds rows, and changes nothing else.
 fn unmet(problem: &Problem) -> Option<&'static str> {
@@ -267,6 +296,7 @@ fn unmet(problem: &Problem) -> Option<&'static str> {
     let is_limited = settings.are_limited_by_noise() && settings.sensor_noise.is_none();
     let seen = &problem.robot().description().identified_from;
     let is_seen = !problem.recordings().suites_among(seen).is_empty();
+    let ends_alone = || Motions::new(problem.recordings()).longest_is_one(problem.recordings());
     if problem.dynamics().linear_system().is_none() {
         Some("its theorem is proved for convex programs, and this model is not linear")
     } else if settings.weights == Weights::Spread {
@@ -278,6 +308,11 @@ fn unmet(problem: &Problem) -> Option<&'static str> {
         )
     } else if settings.initial_limit != InitialLimit::None {
         Some("its theorem asks for fixed limits, and the limit of X0 depends on the recordings")
+    } else if ends_alone() {
+        Some(
+            "its theorem asks for a fixed cost, and this one counts until the end of a single \
+             motion",
+        )
     } else if is_seen {
         Some(
             "its theorem asks for a fixed model, and this robot was identified from recordings \

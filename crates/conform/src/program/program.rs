@@ -32,6 +32,9 @@ pub(crate) const TIGHT: f64 = 1e-6;
 /// Rows within this part of the largest deviation nearly decide the sets.
 pub(crate) const CLOSE: f64 = 0.02;
 
+/// The least size of the unknowns: recordings may agree exactly.
+const LEAST_SCALE: f64 = 1e-12;
+
 /// What is below this part of the largest deviation is rounding.
 pub(super) const ROUNDING: f64 = 1e-14;
 
@@ -109,10 +112,10 @@ impl<'a> Program<'a> {
             limits: Limits::default(),
             cost,
             noise_cost,
-            scale: f64::MIN_POSITIVE,
+            scale: LEAST_SCALE,
             cuts: Vec::new(),
         };
-        program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
+        program.scale = program.largest_bound().max(LEAST_SCALE);
         program
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use reachtube_files::{json, write};
+use reachtube_files::{TOOL, json, write};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -36,7 +36,9 @@ impl<'a> Journal<'a> {
     /// Opens the journal of a problem at `path`, or none.
     pub(super) fn new(path: Option<&'a Path>, problem: &Problem) -> Self {
         let mut digest = Sha256::new();
-        let decides = serde_json::to_string(&(problem.settings(), problem.robot().description()));
+        let (settings, robot) = (problem.settings(), problem.robot().description());
+        let correction = &problem.setup().correction;
+        let decides = serde_json::to_string(&(TOOL, settings, robot, correction));
         digest.update(decides.expect("settings have only finite numbers and string keys"));
         digest.update(&problem.recordings().root);
         for suite in &problem.recordings().suites {
@@ -84,7 +86,7 @@ impl<'a> Journal<'a> {
         let text = json::to_lines(&File {
             format: FORMAT.into(),
             version: VERSION,
-            tool: reachtube_files::TOOL.into(),
+            tool: TOOL.into(),
             job: self.job.clone(),
             progress,
         });

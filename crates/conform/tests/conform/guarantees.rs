@@ -177,3 +177,39 @@ fn a_bound_whose_conditions_are_not_met_is_an_indication() {
         assert_eq!(is_indication, kind == TrustKind::Indication, "{text}");
     }
 }
+
+/// Copies are no evidence, and neither are recordings of a robot at rest.
+#[test]
+fn copies_and_rests_are_no_further_motions() {
+    let (times, mut random, robot) = (grid(0.01, 20), Random(7), two_joints());
+    let arm = Disturbed { robot: &robot, times: &times, start: 0.01, input: 0.5 };
+    let recorded: Vec<Recorded> = SUITES.iter().map(|_| arm.record(&mut random)).collect();
+    let trust = |of: [usize; 4], resting: usize, calibrate: &[&str], longer: usize| {
+        let mut runs = MemoryRuns::default();
+        for (at, motion) in SUITES.iter().enumerate() {
+            let Recorded { times, states, torques } = &recorded[of[at]];
+            let count = if at < longer { 20 } else { 15 };
+            let [states, torques] =
+                [&states[..4 * count], &torques[..2 * count]].map(<[f64]>::to_vec);
+            let run = Run::new(2, times[..count].to_vec(), states, torques).unwrap();
+            runs.push(motion, Some(motion), Some(motion), run).at_rest = at < resting;
+        }
+        let setup = Setup::new(robot.clone(), settings(calibrate)).unwrap();
+        let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
+        conform_all(&problem).trust
+    };
+    let plain = trust([0, 1, 2, 3], 0, &[], 4);
+    assert_eq!((plain.motions, plain.kind), (4, Some(TrustKind::Guarantee)));
+    assert_eq!(trust([0, 1, 2, 0], 0, &[], 4).motions, 3);
+    assert_eq!(trust([0, 1, 2, 3], 2, &[], 4).motions, 2);
+    let both = ["c", "d"];
+    assert_eq!(trust([0, 1, 2, 3], 0, &both, 4).average_probability, Some(1.0 / 3.0));
+    assert_eq!(trust([0, 1, 2, 2], 0, &both, 4).average_probability, Some(0.5));
+    let copied = trust([0, 1, 2, 0], 0, &both, 4);
+    assert!(copied.basis.contains("have copies among the others (a)"), "{}", copied.basis);
+    assert_eq!(copied.kind, None);
+    // The cost counts until the end of the longest motion: here of one alone.
+    let [two, one] = [2, 1].map(|longer| trust([0, 1, 2, 3], 0, &[], longer));
+    assert_eq!((two.kind, one.kind), (plain.kind, Some(TrustKind::Indication)));
+    assert!(one.basis.contains("end of a single motion"), "{}", one.basis);
+}

@@ -5,6 +5,8 @@ use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::median_step;
 use reachtube_files::write::atomically;
 use reachtube_recordings::{MemoryRuns, Run, column_names};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -12,7 +14,7 @@ use std::path::Path;
 const SAME_LENGTH: f64 = 1e-3;
 
 /// Prepared recordings cut into windows, which are test suites for `reachtube conform`.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Windows {
     /// The windows.
     pub windows: Vec<Window>,
@@ -22,6 +24,9 @@ pub struct Windows {
     pub simulated: bool,
     /// Standard deviations of the sensors' noise that is left, 2n, which the index says likewise.
     pub noise: Option<Vec<f64>>,
+    /// The SHA-256 of each log by its name, which the index says likewise, so that windows are
+    /// known by their log.
+    pub origins: BTreeMap<String, String>,
 }
 
 /// An interval of a log.
@@ -69,8 +74,7 @@ pub fn windows(logs: &[PreparedLog], duration: Option<f64>, repeats: bool) -> Wi
         reference => delay(&logs[reference], &logs[index]).unwrap_or(0.0),
     };
     let delays: Vec<f64> = (0..logs.len()).map(late).collect();
-    let mut found =
-        Windows { windows: Vec::new(), changes: Vec::new(), simulated: false, noise: None };
+    let mut found = Windows::default();
     for (index, (log, motion)) in logs.iter().zip(&motions).enumerate() {
         if delays[index] != 0.0 {
             let reference = &logs[first(index)].name;
@@ -129,6 +133,7 @@ impl Windows {
             let entry = runs.push(&file, Some(&window.suite), Some(&window.motion), run);
             entry.simulated = self.simulated;
             entry.noise.clone_from(&self.noise);
+            entry.origin = self.origins.get(&window.log.name).cloned();
         }
         runs
     }
@@ -141,18 +146,28 @@ impl Windows {
     ///
     /// [`Error::File`](crate::Error::File) if a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
-        let mut index = String::from("file,suite,motion,simulated,noise\n");
+        let mut index = String::from("file,suite,motion,simulated,noise,origin\n");
         let noise: Vec<String> =
             self.noise.iter().flatten().map(|deviation| format!("{deviation:.2e}")).collect();
         let noise = noise.join(" ");
         for (file, window) in self.file_names().zip(&self.windows) {
-            let Window { suite, motion, .. } = window;
-            let _ = writeln!(index, "{file},{suite},{motion},{},{noise}", self.simulated);
+            let [name, suite, motion] =
+                [&file, &window.suite, &window.motion].map(|name| cell(name));
+            let origin = self.origins.get(&window.log.name).map_or("", String::as_str);
+            let _ = writeln!(index, "{name},{suite},{motion},{},{noise},{origin}", self.simulated);
             let text = csv(&window.log);
             atomically(&folder.join(&file), |out| out.write_all(text.as_bytes()))?;
         }
         atomically(&folder.join("runs.csv"), |out| out.write_all(index.as_bytes()))?;
         Ok(())
+    }
+}
+
+/// Returns a name as a cell of a CSV file.
+fn cell(name: &str) -> Cow<'_, str> {
+    match name.contains([',', '"', '\n', '\r']) {
+        true => format!("\"{}\"", name.replace('"', "\"\"")).into(),
+        false => name.into(),
     }
 }
 
