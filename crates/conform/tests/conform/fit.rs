@@ -15,6 +15,7 @@ use reachtube_conform::{
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, RunSource, Torque};
 use reachtube_robot::{FrictionErrors, Parameter, ParameterKind, Robot};
+use reachtube_scalar::number::four_decimals;
 
 const SAMPLES: usize = 120;
 const RUNS: usize = 5;
@@ -290,7 +291,7 @@ fn a_fit_that_suits_its_own_motions_only_is_a_warning() {
     assert!(none.is_none() && record.identified_calibrated_cost.is_some(), "{none:?}");
     let (words, record) = overfitted(&[1.6, 1.6, 0.6], &["motion2"]);
     let before = record.identified_calibrated_cost.unwrap();
-    let fact = format!("and {before:.0} with the identified one");
+    let fact = format!("and {} with the identified one", four_decimals(before));
     assert!(words.as_ref().is_some_and(|words| words.contains(&fact)), "{words:?}");
     let (words, record) = overfitted(&[1.6, 0.6], &[]);
     assert!(record.left_out_mean() > Some(record.identified_cost), "{record:?}");

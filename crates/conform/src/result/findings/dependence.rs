@@ -1,6 +1,6 @@
 //! How far the sets depend on single motions and runs.
 
-use reachtube_scalar::number::{at_least, counted, plural};
+use reachtube_scalar::number::{at_least, counted, four_decimals, plural};
 
 use crate::model::file::Model;
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -85,8 +85,9 @@ impl Finding {
                 named => format!("{named} that decide"),
             };
             text += &format!(
-                "; without the {named} most the sets would cost about {cost:.0} (estimated from \
-                 at most 64 samples of each run)"
+                "; without the {named} most the sets would cost about {} (estimated from at most \
+                 64 samples of each run)",
+                four_decimals(cost)
             );
         }
         let finding = Self::new(Severity::Info, Code::DecidingRuns, text + ".");

@@ -36,7 +36,8 @@ impl Finding {
     fn not_taken(record: &FitRecord) -> Self {
         let [identified, fitted] = record.carried_over();
         let size = |cost: Option<f64>| {
-            cost.map_or_else(|| "no factor is enough".into(), |cost| format!("cost {cost:.0}"))
+            let words = |cost| format!("cost {}", four_decimals(cost));
+            cost.map_or_else(|| "no factor is enough".into(), words)
         };
         let text = format!(
             "The fit was not taken: with a motion left out of it, the sets that then grow until \

@@ -7,7 +7,7 @@ use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::listed;
 use crate::result::remedy::Remedy;
-use reachtube_scalar::number::plural;
+use reachtube_scalar::number::{four_decimals, plural};
 
 /// The horizon that is proposed for long recordings, s.
 const FIRST_HORIZON: f64 = 0.5;
@@ -117,11 +117,13 @@ impl From<&Overfit> for Warning {
     fn from(overfit: &Overfit) -> Self {
         let fact = match overfit {
             Overfit::Calibrated { identified, fitted } => format!(
-                "Calibrated sets cost {fitted:.0} with the fitted nominal model and \
-                 {identified:.0} with the identified one"
+                "Calibrated sets cost {} with the fitted nominal model and {} with the identified \
+                 one",
+                four_decimals(*fitted),
+                four_decimals(*identified),
             ),
             Overfit::LeftOut { identified, fitted } => {
-                let size = |cost: &Option<f64>| cost.map(|cost| format!("{cost:.0}"));
+                let size = |cost: &Option<f64>| cost.map(four_decimals);
                 let costs = size(fitted).zip(size(identified));
                 let costs = costs.map(|(fitted, before)| format!(" (cost {fitted}, {before})"));
                 format!(
