@@ -72,6 +72,9 @@ fn verdict(sources: &Sources) -> Verdict {
         }
     });
     let mut not_proved = of_check(&[Code::AtSamples, Code::Notion, Code::OuterSet]);
+    if model.settings.states == States::Positions {
+        not_proved.push("Velocities are not compared with the set, and may lie outside it.".into());
+    }
     not_proved.extend(of_codes(sources, &model.findings(), &[Code::Explanations]));
     not_proved.extend(of_check(&[Code::SetLost]));
     Verdict {

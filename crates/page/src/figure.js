@@ -169,12 +169,14 @@ function spotTraces(suite, state, i, axes) {
   const outside = spots.map(spot => spot.margin < 0);
   return [{
     ...axes, type: "scatter", mode: "markers", uid: `spots-${i}x`, x: spots.map(s => s.time), y,
-    customdata: spots.map(spot => [plain(suite.runs[spot.run].name), spot.margin]),
+    customdata: spots.map((spot, k) => (
+      [plain(suite.runs[spot.run].name), spot.margin, outside[k] ? "lies outside" : "decides"]
+    )),
     marker: {
       symbol: "circle-open", size: outside.map(is => (is ? 12 : 8)),
       color: outside.map(is => css(is ? "--bad" : "--ink")), line: { width: 1.4 },
     },
-    hovertemplate: `<b>%{customdata[0]}</b> decides here<br>%{x:.4f} s: %{y:.7~g} ` +
+    hovertemplate: `<b>%{customdata[0]}</b> %{customdata[2]} here<br>%{x:.4f} s: %{y:.7~g} ` +
       `${suite.units[i]}<br>margin %{customdata[1]:.3~g} ${suite.units[i]}<extra></extra>`,
   }];
 }

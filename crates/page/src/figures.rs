@@ -54,13 +54,14 @@ pub(super) fn figures(page: &Page) -> Result<Markup, Error> {
     })
 }
 
-/// Returns a suite's name; where there are many, also the part of the set that its runs reach and
-/// the number of rows that they decide.
+/// Returns a suite's name; where there are many, also the part of the set that its runs reach, and
+/// the number of rows that they decide or that lie outside.
 fn suite_label(suite: &SuiteFigure, are_many: bool) -> String {
     let Some(part) = suite.furthest.filter(|_| are_many) else { return suite.suite.clone() };
-    let rows = match suite.tight.len() {
-        0 => String::new(),
-        rows => format!(", decides {rows}"),
+    let rows = match (suite.outside, suite.decided()) {
+        (0, 0) => String::new(),
+        (0, decided) => format!(", decides {decided}"),
+        (outside, _) => format!(", {outside} outside"),
     };
     format!("{} {:.0} %{rows}", suite.suite, 100.0 * part)
 }
@@ -85,7 +86,7 @@ fn explorer() -> Markup {
                 span.hint { "Runs" }
                 button #show-all type="button" { "All" }
                 button #show-none type="button" { "None" }
-                button #show-deciding type="button" { "Joints that decide" }
+                button #show-deciding type="button" { "Deciding or outside" }
             }
             ul.runs #run-list {}
             p.hint {
@@ -100,6 +101,9 @@ fn explorer() -> Markup {
 
 /// Returns all suites as a table, for readers without scripts.
 fn suites_table(page: &Page) -> Markup {
+    // Recordings that the model was not made from decide nothing.
+    let decide = page.suites.iter().any(|suite| suite.decided() > 0);
+    let leave = page.suites.iter().any(|suite| suite.outside > 0);
     html! {
         div.tall.suite-table tabindex="0" role="region" aria-label="Suites" {
             table {
@@ -108,7 +112,8 @@ fn suites_table(page: &Page) -> Markup {
                         th scope="col" { "Suite" }
                         th.number scope="col" { "Runs" }
                         th.number scope="col" { "Part of the set used" }
-                        th.number scope="col" { "Rows decided" }
+                        @if decide { th.number scope="col" { "Rows decided" } }
+                        @if leave { th.number scope="col" { "Rows outside" } }
                     }
                 }
                 tbody {
@@ -121,7 +126,8 @@ fn suites_table(page: &Page) -> Markup {
                                     (format!("{:.1} %", 100.0 * part))
                                 }
                             }
-                            td.number { (suite.tight.len()) }
+                            @if decide { td.number { (suite.decided()) } }
+                            @if leave { td.number { (suite.outside) } }
                         }
                     }
                 }
@@ -173,19 +179,23 @@ fn caption(suite: &SuiteFigure, view: View) -> String {
         View::Motion => "The recorded states",
         View::Deviation => "The recorded states minus the nominal motion",
     };
-    let rings = match suite.tight.len() {
+    let rings = match suite.decided() {
         0 => "",
-        _ => " Rings mark the samples that decide the sets or lie furthest outside them.",
+        _ => " Rings mark the samples that decide the sets.",
     };
-    let outside = suite.tight.iter().filter(|spot| spot.margin < 0.0).count();
+    let outside = suite.tight.len() - suite.decided();
     let outside = match outside {
         0 => String::new(),
-        1 => " The larger red ring marks a sample outside the set.".into(),
+        1 => " The larger red ring marks the sample furthest outside the set.".into(),
         more => format!(" The larger red rings mark {more} samples outside the set."),
     };
+    let compared = match suite.positions_only {
+        true => " Only positions are compared: velocities are not, and may lie outside the set.",
+        false => "",
+    };
     format!(
-        "{what} of {} (lines) in the reachable set (grey), from {} to {} s. Between samples \
-         the edges of the set are joined by straight lines.{rings}{outside}",
+        "{what} of {} (lines) in the reachable set (grey), from {} to {} s.{compared} Between \
+         samples the edges of the set are joined by straight lines.{rings}{outside}",
         counted(suite.runs.len(), "run"),
         significant(suite.times[0], 5),
         significant(suite.times[suite.times.len() - 1], 5),
@@ -198,8 +208,11 @@ fn runs(suite: &SuiteFigure) -> Markup {
     let idle = suite.runs.iter().filter(|run| run.touches == 0).count();
     html! {
         p.hint {
-            "Runs and the number of support rows that each decides (" (idle) " of "
-            (suite.runs.len()) " decide none):"
+            @if idle == suite.runs.len() { "Runs:" }
+            @else {
+                "Runs and the number of support rows that each decides (" (idle) " of "
+                (suite.runs.len()) " decide none):"
+            }
         }
         ul.runs {
             @for (run, heat) in suite.runs.iter().zip(heat) { li { (run_label(run, heat)) } }
@@ -217,5 +230,40 @@ fn run_label(run: &RunTrace, heat: f64) -> Markup {
             }
             @if run.touches > 0 { " " b { (run.touches) } }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn a_caption_limits_its_claim_where_only_positions_are_compared() {
+        let words = "velocities are not, and may lie outside the set";
+        let mut suite = sample::suite("S", 1);
+        assert!(!caption(&suite, View::Motion).contains(words));
+        suite.positions_only = true;
+        assert!(caption(&suite, View::Motion).contains(words));
+        assert!(caption(&suite, View::Deviation).contains(words));
+    }
+
+    #[test]
+    fn suites_that_leave_the_set_decide_nothing() {
+        let mut page = sample::page();
+        let mut suite = sample::suite("S", 1);
+        assert_eq!(suite_label(&suite, true), "S 90 %, decides 2");
+        page.suites = vec![suite.clone()];
+        let table = suites_table(&page).into_string();
+        assert!(table.contains("Rows decided") && !table.contains("Rows outside"));
+        suite.tight.truncate(1);
+        (suite.tight[0].margin, suite.outside, suite.furthest) = (-0.1, 14, Some(1.5));
+        suite.runs.iter_mut().for_each(|run| run.touches = 0);
+        assert_eq!(suite_label(&suite, true), "S 150 %, 14 outside");
+        assert!(!runs(&suite).into_string().contains("decide"));
+        assert!(!caption(&suite, View::Motion).contains("decide"));
+        page.suites = vec![suite];
+        let table = suites_table(&page).into_string();
+        assert!(!table.contains("Rows decided") && table.contains("Rows outside"));
     }
 }

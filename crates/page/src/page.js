@@ -84,7 +84,9 @@ function listRuns() {
     button.append(document.createElement("i"), run.name);
     const more = button.appendChild(document.createElement("small"));
     const degrees = run.temperature === null ? "" : `${run.temperature.toFixed(1)} °C `;
-    more.textContent = degrees + (run.touches > 0 ? `decides ${run.touches}` : "");
+    const leaves = suite().tight.some(spot => spot.run === r && spot.margin < 0);
+    const decides = run.touches > 0 ? `decides ${run.touches}` : "";
+    more.textContent = degrees + (leaves ? "outside" : decides);
     button.addEventListener("click", () => pin(r));
     item.addEventListener("pointerenter", () => highlight(r));
     item.addEventListener("pointerleave", () => highlight(null));
@@ -95,7 +97,7 @@ function listRuns() {
 }
 
 function showRuns(shown) {
-  state.hidden = new Set(suite().runs.flatMap((run, r) => (shown(run) ? [] : [r])));
+  state.hidden = new Set(suite().runs.flatMap((run, r) => (shown(run, r) ? [] : [r])));
   listRuns();
   draw();
 }
@@ -240,7 +242,8 @@ function start() {
   on("reset", "click", resetZoom);
   on("show-all", "click", () => showRuns(() => true));
   on("show-none", "click", () => showRuns(() => false));
-  on("show-deciding", "click", () => showRuns(run => run.touches > 0));
+  const marked = r => suite().tight.some(spot => spot.run === r);
+  on("show-deciding", "click", () => showRuns((run, r) => marked(r)));
   on("plot", "keydown", onKey);
   plot.on("plotly_relayout", onMoved);
   plot.on("plotly_doubleclick", resetZoom);

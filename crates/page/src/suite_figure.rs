@@ -22,6 +22,8 @@ pub struct SuiteFigure {
     /// A second band, drawn dark grey, such as the position-conformant reachable set of Fig. 4, or
     /// the lowest and highest values of all runs.
     pub inner: Option<Band>,
+    /// Whether only positions are compared with the set, so that velocities may lie outside.
+    pub positions_only: bool,
     /// The nominal motion, from which deviations are measured.
     pub nominal: Nominal,
     /// The recorded runs that are drawn.
@@ -30,6 +32,8 @@ pub struct SuiteFigure {
     pub undrawn: usize,
     /// The samples that decide the sets, or lie outside the reachable set.
     pub tight: Vec<TightSpot>,
+    /// Number of rows of all runs that lie outside the reachable set, drawn or not.
+    pub outside: usize,
     /// The largest [`RunTrace::gauge`] of all runs, drawn or not.
     pub furthest: Option<f64>,
     /// How far every run comes out, drawn or not.
@@ -147,6 +151,11 @@ impl SuiteFigure {
         let n = self.joints.len();
         let quantity = if state < n { "position" } else { "velocity" };
         format!("{}, {quantity}", self.joints[state % n])
+    }
+
+    /// Returns the number of drawn samples that decide the sets; samples outside decide nothing.
+    pub(super) fn decided(&self) -> usize {
+        self.tight.iter().filter(|spot| spot.margin >= 0.0).count()
     }
 
     /// Returns the unit that the positions or the velocities of all joints share, for the quantity

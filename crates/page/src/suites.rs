@@ -1,6 +1,7 @@
 //! Assembly of the figures of the suites.
 
 use reachtube_conform::data::Suite;
+use reachtube_conform::settings::States;
 use reachtube_conform::tube::Witness;
 use reachtube_conform::{Problem, SuiteReach};
 
@@ -47,13 +48,14 @@ fn put_furthest_first(figures: &mut [SuiteFigure]) {
     }
 }
 
-/// Returns by what suites are ordered: how far out the runs come, then how much they decide.
-fn rank(figure: &SuiteFigure) -> (f64, f64, usize) {
-    let outside = figure.tight.iter().map(|spot| -spot.margin).fold(0.0, f64::max);
+/// Returns by what suites are ordered: how far out the runs come, as the page prints it, then how
+/// many of their rows lie outside, then how much they decide.
+fn rank(figure: &SuiteFigure) -> (f64, usize, usize) {
     let touches = figure.runs.iter().map(|run| run.touches).sum();
-    // Many suites touch the set, to rounding.
-    let furthest = (1e3 * figure.furthest.unwrap_or(0.0)).round();
-    (outside.max(0.0), furthest, touches)
+    // Many suites touch the set, to rounding. Outside a set without width there is no percentage.
+    let without_width = if figure.outside > 0 { f64::INFINITY } else { 0.0 };
+    let furthest = figure.furthest.map_or(without_width, |part| (1e3 * part).round());
+    (furthest, figure.outside, touches)
 }
 
 /// Makes the figure of one suite.
@@ -69,7 +71,9 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     let chosen = if are_many { deciding(&spots) } else { (0..suite.runs.len()).collect() };
     spots.retain(|spot| chosen.contains(&spot.run));
     let sets = model.sets();
-    let noise: Vec<f64> = (0..2 * joints).map(|i| sets.noise_radius(i)).collect();
+    let positions_only = model.settings.states == States::Positions;
+    let compared = if positions_only { joints } else { 2 * joints };
+    let noise: Vec<f64> = (0..compared).map(|i| sets.noise_radius(i)).collect();
     // Each run as a line, relative to its own nominal motion where it has one.
     let (mut runs, mut range, mut gauges) = (Vec::new(), None, Vec::new());
     for (order, summary) in suite.runs.iter().enumerate() {
@@ -78,7 +82,8 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
         let mut run = trace(problem, summary.index, order, of_run.copied())?;
         let at_samples = at_samples(&run, &longest.times);
         run.gauge = gauge(&at_samples, &band, &noise);
-        run.touches = spots.iter().filter(|spot| spot.run == order).count();
+        let decides = |spot: &&TightSpot| spot.run == order && spot.margin >= 0.0;
+        run.touches = spots.iter().filter(decides).count();
         gauges.extend(run.gauge.map(|gauge| {
             let RunTrace { order, temperature, .. } = run;
             RunGauge { order, temperature, gauge }
@@ -103,8 +108,10 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
         kinds: model.robot.kinds(),
         times: longest.times.clone(),
         band,
+        positions_only,
         inner: range.map(|[lower, upper]| Band { label, lower, upper }),
         nominal: if shared { Nominal::Shared(nominal) } else { Nominal::PerRun },
+        outside: outside(sources, name),
         undrawn: suite.runs.len() - runs.len(),
         runs,
         tight: spots,
@@ -113,13 +120,21 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     })
 }
 
-/// Returns the samples of a suite that decide the sets, and the worst one outside.
+/// Returns the number of rows of a suite that lie outside the set.
+fn outside(sources: &Sources, name: &str) -> usize {
+    let verdicts = sources.check.verdict.suites.iter().filter(|verdict| verdict.suite == name);
+    verdicts.map(|verdict| verdict.violations.count).sum()
+}
+
+/// Returns the samples of a suite that decide the sets, if the model was made from these
+/// recordings, and the worst one outside.
 fn spots(sources: &Sources, suite: &Suite) -> Vec<TightSpot> {
     let Sources { model, problem, check, .. } = *sources;
     let (joints, name) = (model.joints(), &suite.entry.name);
     let place =
         |file: &String| suite.runs.iter().position(|run| problem.entry(run.index).file == *file);
-    let tight = model.tight.iter().filter(|witness| witness.suite == *name);
+    let is_own = sources.are_own();
+    let tight = model.tight.iter().filter(|witness| is_own && witness.suite == *name);
     let verdicts = check.verdict.suites.iter().filter(|verdict| verdict.suite == *name);
     let worst = verdicts.filter_map(|verdict| verdict.violations.worst.as_ref());
     tight
@@ -182,7 +197,7 @@ fn at_samples(run: &RunTrace, times: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Returns the part of the radius of the band with the noise set V that a run reaches at most, to
-/// rounding. `noise` has the radius of V in each state.
+/// rounding. `noise` has the radius of V in each state that is compared.
 fn gauge(states: &[Vec<f64>], band: &Band, noise: &[f64]) -> Option<f64> {
     let rows = states.iter().zip(&band.lower).zip(&band.upper).zip(noise);
     let parts = rows.flat_map(|(((row, low), high), noise)| {
@@ -303,6 +318,8 @@ mod tests {
                 (0..count).map(|k| sample::suite(&k.to_string(), 1)).collect();
             figures.iter_mut().for_each(|figure| figure.furthest = Some(0.2));
             figures[5].furthest = Some(0.9);
+            // The margins of different units do not count before the percentage.
+            figures[7].tight[0].margin = -5.0;
             put_furthest_first(&mut figures);
             figures[0].suite.clone()
         };
@@ -316,6 +333,10 @@ mod tests {
         let states = at_samples(run, &figure.times);
         let part = gauge(&states, &figure.band, &[0.0; 2]).unwrap();
         assert!((part - 0.04 * 2.0 / (0.01 + 0.05 * 2.0)).abs() < 1e-9, "{part}");
+        let mut faster = states.clone();
+        faster[1].iter_mut().for_each(|velocity| *velocity += 1.0);
+        let of_positions = gauge(&faster, &figure.band, &[0.0; 1]).unwrap();
+        assert!((of_positions - part).abs() < 1e-9, "{of_positions}");
         let mut range = None;
         figure.runs.iter().for_each(|run| include(&mut range, at_samples(run, &figure.times)));
         let [low, high] = range.unwrap();
