@@ -61,7 +61,10 @@ fn sections(page: &Page) -> Result<Vec<(&'static str, Markup)>, Error> {
     let suites = !page.suites.is_empty();
     add(suites, FIGURES, figures::figures(page)?);
     add(!page.phase_planes.is_empty(), "Phase planes", phase_planes(&page.phase_planes)?);
-    add(suites, "Where the sets are tight", tables::tight(page));
+    let are_tight = page.suites.iter().any(|suite| !suite.tight.is_empty());
+    let decide = page.suites.iter().any(|suite| suite.decided() > 0);
+    let tight = if decide { "Where the sets are tight" } else { "Where recordings lie outside" };
+    add(are_tight, tight, tables::tight(page));
     add(!page.sets.is_empty(), "Uncertainty sets", sets(page));
     add(!page.cost.is_empty(), "What drives the cost", cost(page)?);
     add(!page.nominal.is_empty(), "Fitted nominal model", text_tables(&page.nominal));
@@ -278,6 +281,22 @@ mod tests {
         let html = written(&page);
         assert_eq!(html.matches("<svg").count(), 2 * 3 + 3);
         assert!(html.contains("id=\"data-39\"") && html.contains("id=\"suite-search\""));
+    }
+
+    #[test]
+    fn a_page_without_tight_spots_has_no_section_for_them() {
+        let mut page = sample::page();
+        assert!(written(&page).contains("Where the sets are tight"));
+        let spots = |page: &mut Page, keep: usize| {
+            page.suites.iter_mut().for_each(|suite| suite.tight.truncate(keep));
+        };
+        spots(&mut page, 1);
+        page.suites.iter_mut().for_each(|suite| suite.tight[0].margin = -0.1);
+        let html = written(&page);
+        assert!(!html.contains("are tight") && html.contains("Where recordings lie outside"));
+        spots(&mut page, 0);
+        let html = written(&page);
+        assert!(!html.contains("are tight") && !html.contains("Where recordings lie outside"));
     }
 
     #[test]

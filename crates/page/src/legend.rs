@@ -20,10 +20,11 @@ const LABEL_GAP: f64 = 6.0;
 const SCALE: f64 = 120.0;
 /// Number of colours of the scale.
 const SCALE_STEPS: usize = 40;
-/// Mean width of a character \[px\]; the page's font is not known when the figure is drawn.
-const CHARACTER: f64 = 6.0;
-/// Width of the title over the width of a label with as many characters.
-const TITLE_WIDTH: f64 = 1.25;
+/// Mean width of a character \[px\] in a wide font; the page's font is not known when the figure
+/// is drawn. Names of suites have digits and capital letters, which are wide.
+const CHARACTER: f64 = 6.8;
+/// Width of the title, which is bold, over the width of a label with as many characters.
+const TITLE_WIDTH: f64 = 1.35;
 
 /// One entry.
 enum Entry {
@@ -174,6 +175,15 @@ mod tests {
         let placed = flow(entries, 600.0);
         assert!(placed.iter().all(|(entry, x, _)| x + entry.width() <= 600.0));
         assert!(placed.last().is_some_and(|entry| entry.2 >= 2));
+    }
+
+    #[test]
+    fn a_wide_title_ends_before_the_next_entry() {
+        // Measured in DejaVu Sans at 13 px, bold.
+        let title = "UR10e-load-5kg: deviation from the nominal";
+        let (wide, entry) = (8.1 * title.len() as f64, Entry::Title(title.into()));
+        let placed = flow(vec![entry, Entry::Ring(false, "tight spot".into())], 900.0);
+        assert!(placed[1].2 == 0 && placed[1].1 >= LEFT + wide, "{}", placed[1].1);
     }
 
     #[test]

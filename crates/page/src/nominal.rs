@@ -5,7 +5,7 @@ use reachtube_conform::result::Code;
 use reachtube_conform::{Finding, Model};
 
 use crate::cost::cost_unit;
-use crate::text_table::TextTable;
+use crate::text_table::{TextTable, change};
 use reachtube_scalar::number::four_decimals;
 
 /// The column of standard errors in the table of parameters.
@@ -47,7 +47,7 @@ pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
 /// Returns the costs of the smallest sets for all motions, for several nominal models.
 fn costs(model: &Model, fit: &FitRecord) -> TextTable {
     let row = |name: String, cost: Option<f64>| {
-        let change = |cost| format!("{:+.1} %", 100.0 * (cost / fit.identified_cost - 1.0));
+        let change = |cost| change(cost, fit.identified_cost);
         let none = || "a nominal motion runs away".into();
         vec![name, cost.map_or_else(none, four_decimals), cost.map_or_else(String::new, change)]
     };
