@@ -1,11 +1,12 @@
 //! What the cost of the sets comes from: joints, runs and motions.
 
 use reachtube_conform::Model;
+use reachtube_conform::next_motion::LeftOut;
 use reachtube_conform::settings::Weights;
 
 use crate::chart::{Chart, Series};
 use crate::suite_figure::{Band, Nominal, RunTrace, SuiteFigure};
-use crate::text_table::TextTable;
+use crate::text_table::{TextTable, change};
 use reachtube_scalar::number::{at_least, four_decimals};
 
 /// Blue.
@@ -177,51 +178,56 @@ fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
     table
 }
 
-/// Returns what the sets cost without each motion, the cheapest first.
-fn by_motion(model: &Model) -> TextTable {
+/// Returns the cost of the smallest sets for all motions that the sets were found on, beside which
+/// the costs without a motion stand; `None` if the model does not have it. Sets that were
+/// calibrated or widened are not the smallest.
+fn smallest_cost(model: &Model) -> Option<f64> {
     // Sets of a model that is not linear are linearised ones.
     let linearised = model.search.as_ref().and_then(|search| search.linearised_cost);
-    let Some(cost) = linearised.or(model.cost) else { return TextTable::default() };
-    let mut motions: Vec<_> =
-        model.left_out.iter().filter_map(|left| Some((left, left.cost?))).collect();
+    let is_wider =
+        model.calibration.is_some() || !model.allowance.is_empty() || !model.stiction.is_empty();
+    let of_fit =
+        model.fit.as_ref().map(|fit| if fit.taken { fit.cost } else { fit.identified_cost });
+    linearised.or(if is_wider { of_fit } else { model.cost })
+}
+
+/// Returns what the sets cost without each motion, the cheapest first.
+fn by_motion(model: &Model) -> TextTable {
+    let is_linearised =
+        model.search.as_ref().is_some_and(|search| search.linearised_cost.is_some());
+    let mut table = without_each(&model.left_out, smallest_cost(model), &cost_unit(model));
+    table.title = format!(
+        "{} found without a motion, and the factor by which they must grow to hold it",
+        if is_linearised { "Linearised sets" } else { "Sets" }
+    );
+    table
+}
+
+/// Returns the table of the sets without each motion; without a column of changes if `smallest`,
+/// the cost of the smallest sets for all motions, is not known.
+fn without_each(left_out: &[LeftOut], smallest: Option<f64>, unit: &str) -> TextTable {
+    let mut motions: Vec<_> = left_out.iter().filter_map(|left| Some((left, left.cost?))).collect();
     motions.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let factor = |of: Option<f64>| of.map_or_else(|| "none found".into(), at_least);
-    let row = |(left, without): &(&reachtube_conform::next_motion::LeftOut, f64)| {
-        vec![
-            left.motion.clone(),
-            four_decimals(*without),
-            format!("{:+.1} %", 100.0 * (without / cost - 1.0)),
-            factor(left.gauge),
-            factor(left.initial_gauge),
-            factor(left.input_gauge),
-        ]
-    };
     // Only linear models have the factors of X0 and of U in turn.
     let in_turn = motions.iter().any(|(left, _)| left.initial_gauge.is_some());
-    let columns = if in_turn { 6 } else { 4 };
-    let first = |mut row: Vec<String>| {
-        row.truncate(columns);
+    let factor = |of: Option<f64>| of.map_or_else(|| "none found".into(), at_least);
+    let row = |(left, without): &(&LeftOut, f64)| {
+        let mut row = vec![left.motion.clone(), four_decimals(*without)];
+        row.extend(smallest.map(|smallest| change(*without, smallest)));
+        row.push(factor(left.gauge));
+        if in_turn {
+            row.extend([factor(left.initial_gauge), factor(left.input_gauge)]);
+        }
         row
     };
-    TextTable {
-        title: format!(
-            "{} found without a motion, and the factor by which they must grow to hold it",
-            if linearised.is_some() { "Linearised sets" } else { "Sets" }
-        ),
-        header: first(
-            [
-                "Without",
-                &format!("Cost {}", cost_unit(model)),
-                "Change",
-                "Factor",
-                "X0 at start",
-                "Then U",
-            ]
-            .map(String::from)
-            .to_vec(),
-        ),
-        rows: motions.iter().take(MOST_ROWS).map(row).map(first).collect(),
+    let mut header = vec!["Without".into(), format!("Cost {unit}")];
+    header.extend(smallest.map(|_| "Change".into()));
+    header.push("Factor".into());
+    if in_turn {
+        header.extend(["X0 at start", "Then U"].map(String::from));
     }
+    let rows = motions.iter().take(MOST_ROWS).map(row).collect();
+    TextTable { header, rows, ..TextTable::default() }
 }
 
 #[cfg(test)]
@@ -248,5 +254,23 @@ mod tests {
         assert_eq!(charts[1].series[0].points, [(20.0, 1.0), (25.0, 1.0)]);
         let alone = SuiteFigure { gauges: vec![run(4, None)], ..sample::suite("S", 1) };
         assert!(cost_charts(&[alone]).is_empty());
+    }
+
+    #[test]
+    fn costs_without_a_motion_are_compared_with_the_smallest_sets_or_not_at_all() {
+        let left = |motion: &str, cost: f64| LeftOut {
+            motion: motion.into(),
+            cost: Some(cost),
+            gauge: Some(1.5),
+            ..LeftOut::default()
+        };
+        let left_out = [left("M1", 8.0), left("M2", 4.0)];
+        let known = without_each(&left_out, Some(8.0), "[s]");
+        assert_eq!(known.header, ["Without", "Cost [s]", "Change", "Factor"]);
+        assert_eq!(known.rows[0], ["M2", "4.000", "-50.0 %", "1.500"]);
+        assert_eq!(known.rows[1][2], "+0.0 %");
+        let unknown = without_each(&left_out, None, "[s]");
+        assert_eq!(unknown.header, ["Without", "Cost [s]", "Factor"]);
+        assert_eq!(unknown.rows[1], ["M1", "8.000", "1.500"]);
     }
 }
