@@ -10,6 +10,7 @@ use crate::chart::{Chart, Series};
 use crate::error::Result;
 use crate::page::Lead;
 use crate::sources::{Sources, joint_name};
+use crate::text::capital;
 
 /// Blue, grey, black and red.
 const MAIN: [u8; 3] = [18, 70, 200];
@@ -125,6 +126,8 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     series.push(line(vec![(horizon, 0.0), (horizon, highest)], CHOSEN));
     series.push(line(own.clone(), MAIN));
     series.push(Series { points: own.clone(), dots: true, colour: MAIN });
+    let reason = built.made.iter().find(|choice| choice.key == "horizon");
+    let reason = reason.map_or_else(String::new, |choice| because(horizon, &choice.reason));
     let first = built.horizons.iter().find(|widths| widths.with_fit);
     let without_fit = first.map_or_else(String::new, |first| {
         format!(" Horizons below {} s were tried without the fit.", first.horizon)
@@ -132,9 +135,11 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     let caption = format!(
         "How wide the sets are beside the motion, by horizon: {name} (blue), whose set is the \
          widest at {horizon} s (vertical line), and the other joints (grey). Up to the red line, \
-         {:.0} %, sets are useful. Other horizons were tried on up to 200 windows.{without_fit} \
-         The ratio may be compared across horizons; the cost may not: it adds rad to rad/s and \
-         grows with the length of the motions, so it is compared only within one data set.",
+         {:.0} %, sets are useful. At {horizon} s the sets are for all windows. At other horizons \
+         they may be for at most 200 windows, and the sets for all windows may be \
+         wider.{reason}{without_fit} The ratio may be compared across horizons; the cost may not: \
+         it adds rad to rad/s and grows with the length of the motions, so it is compared only \
+         within one data set.",
         100.0 * most
     );
     let chart = Chart {
@@ -145,6 +150,14 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
         series,
     };
     Some((chart, caption))
+}
+
+/// Returns why a horizon \[s\] was chosen, as a sentence: windows that are not drawn may decide.
+fn because(horizon: f64, reason: &str) -> String {
+    match reason {
+        "" | "given" => String::new(),
+        reason => format!(" Why {horizon} s: {}.", capital(reason)),
+    }
 }
 
 /// Returns the longest reachable set. Windows are equally long: of several longest sets it is the
@@ -218,4 +231,18 @@ fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
         series,
     };
     Ok(Some((chart, caption)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reason_of_a_horizon_is_a_sentence_of_its_caption() {
+        let reason =
+            "the widest set is 26 % of the motion (J1); at 1 s all windows give 130 % (J1)";
+        let sentence = format!(" Why 0.5 s: T{}.", &reason[1..]);
+        assert_eq!(because(0.5, reason), sentence);
+        assert_eq!([because(0.5, "given"), because(0.5, "")], ["", ""]);
+    }
 }
