@@ -5,6 +5,7 @@ use reachtube_conform::result::Code;
 use reachtube_conform::settings::{Equations, States};
 use reachtube_conform::{Finding, Model};
 use reachtube_reach::Hyperrectangle;
+use reachtube_recordings::{Preparation, Torque};
 use reachtube_scalar::number::counted;
 
 use crate::cost::{cost_charts, cost_tables, cost_unit, sum_unit};
@@ -148,7 +149,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("Measurement noise [SI units]", word(&settings.noise)),
         ("Nominal motion starts at", word(settings.nominal)),
         ("Nominal motion satisfies the equations of", word(settings.equations)),
-        ("Recorded torque", word(settings.torque)),
+        ("Recorded torque", recorded_torque(settings.torque, model.preparation.as_ref())),
         ("Fitted to", format!("{runs} runs of suites {}", suites.join(", "))),
         ("SHA-256 of the data", model.data.sha256.clone()),
         ("Written by", model.tool.clone()),
@@ -158,6 +159,15 @@ fn facts(model: &Model) -> Vec<(String, String)> {
     .chain((!model.allowance.is_empty()).then(|| (ALLOWANCE, word(&model.allowance))))
     .map(|(name, value)| (name.to_string(), value))
     .collect()
+}
+
+/// Returns the kind of the recorded torques. A model that was made of logs has an input that was
+/// prepared from the torques of the logs.
+fn recorded_torque(of_input: Torque, preparation: Option<&Preparation>) -> String {
+    match preparation.filter(|done| done.torque != of_input) {
+        Some(done) => format!("{}, prepared as {} input", word(done.torque), word(of_input)),
+        None => word(of_input),
+    }
 }
 
 /// Returns what of the verdict is not the model's own: the recordings, the notion, and the end of
@@ -227,4 +237,27 @@ pub(super) fn as_sentence(words: &str) -> String {
     let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
     let end = if rest.ends_with(['.', ':']) { "" } else { "." };
     format!("{}{rest}{end}", first.to_uppercase())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use reachtube_recordings::{ColumnSettings, LogSettings};
+
+    #[test]
+    fn the_torque_of_a_prepared_model_is_that_of_its_logs() {
+        let prepared = |torque| Preparation {
+            torque,
+            gains: Vec::new(),
+            cut_off: None,
+            window: Some(0.5),
+            max_gap: None,
+            columns: ColumnSettings::default(),
+            log: LogSettings::default(),
+        };
+        let words = |torque| recorded_torque(Torque::Compensated, Some(&prepared(torque)));
+        assert_eq!(words(Torque::Motor), "motor, prepared as compensated input");
+        assert_eq!(words(Torque::Compensated), "compensated");
+        assert_eq!(recorded_torque(Torque::Link, None), "link");
+    }
 }
