@@ -19,8 +19,8 @@ impl<'a> Motions<'a> {
         Self::some(recordings, |_| true)
     }
 
-    /// Takes what a bound may count: suites in which the robot moves, since a bound for motions does
-    /// not hold for poses. Motions that share a recording are one.
+    /// Takes what a bound may count: suites in which the robot moves, since a bound for motions
+    /// does not hold for poses. Motions that share a recording are one.
     pub(crate) fn independent(recordings: &'a Recordings) -> Self {
         let mut moving = Self::some(recordings, |suite| !suite.is_at_rest());
         let mut known: HashMap<&str, &str> = HashMap::new();
