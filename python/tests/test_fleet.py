@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import signal
 import threading
@@ -182,40 +181,6 @@ def test_defects_are_named_or_left_out(manifest: Path, tmp_path: Path, client: A
     fleet.write_manifest(clean, rows)
     other = fleet.conform(rt.Robot.lwa4p(), clean, **arguments)
     assert found.cost == other.cost and found.initial_set == other.initial_set
-
-
-def with_digests(manifest: Path) -> Path:
-    """Write the manifest once more, with the SHA-256 of each recording."""
-    path = manifest.parent / "digests.parquet"
-    rows = fleet.read_manifest(manifest)
-    digest = lambda row: hashlib.sha256((manifest.parent / row.file).read_bytes()).hexdigest()
-    fleet.write_manifest(path, [row._replace(sha256=digest(row)) for row in rows])
-    return path
-
-
-def test_a_stopped_job_goes_on(manifest: Path, alone: rt.Model, tmp_path: Path) -> None:
-    arguments: dict[str, Any] = {
-        "torque": "compensated", "runs_per_task": 10, "resume": tmp_path / "tasks"
-    }
-    # Without digests, recordings may be others by the time the job goes on.
-    assert fleet.conform(rt.Robot.lwa4p(), manifest, **arguments) == alone
-    assert not (tmp_path / "tasks").exists()
-    manifest = with_digests(manifest)
-
-    def stop(done: int, total: int, words: list[str]) -> None:
-        if done == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        fleet.conform(rt.Robot.lwa4p(), manifest, progress=stop, **arguments)
-    finished = sorted((tmp_path / "tasks").iterdir())
-    assert len(finished) == 2
-    times = [path.stat().st_mtime_ns for path in finished]
-    # One of them is damaged; it is folded again.
-    finished[0].write_bytes(finished[0].read_bytes()[:-1])
-    assert fleet.conform(rt.Robot.lwa4p(), manifest, **arguments) == alone
-    assert len(list((tmp_path / "tasks").iterdir())) == 4
-    assert finished[1].stat().st_mtime_ns == times[1]
 
 
 GATE = threading.Event()
