@@ -1,5 +1,10 @@
+use crate::prepare::resample::median_step;
 use reachtube_recordings::Run;
+use reachtube_scalar::number::counted;
 use std::path::PathBuf;
+
+/// A time between samples is a gap above this multiple of the usual time.
+const GAP: f64 = 1.9;
 
 /// A recording as read, with its columns in the order of the robot's joints.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,5 +34,41 @@ impl RawLog {
         joint: usize,
     ) -> impl Fn(usize) -> f64 + 'a {
         move |k| which(&self.run, k)[joint]
+    }
+
+    /// Returns a note on the gaps that `max_gap` \[s\] admits, if it is given: resampling fills
+    /// them.
+    pub(super) fn filled_gaps(&self, max_gap: Option<f64>) -> Option<String> {
+        let usual = median_step(&self.run.times).filter(|_| max_gap.is_some())?;
+        let steps = self.run.times.windows(2).map(|pair| pair[1] - pair[0]);
+        let gaps: Vec<f64> = steps.filter(|step| *step > GAP * usual).collect();
+        let longest = gaps.iter().copied().fold(0.0, f64::max);
+        let text = format!(
+            "{}: {} of up to {longest:.3} s filled by lines from sample to sample; what is proved \
+             there was not recorded",
+            self.name,
+            counted(gaps.len(), "gap")
+        );
+        (!gaps.is_empty()).then_some(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gaps_that_are_filled_are_noted() {
+        let log = |times: Vec<f64>| {
+            let (states, torques) = (vec![0.0; 2 * times.len()], vec![0.0; times.len()]);
+            let run = Run::new(1, times, states, torques).unwrap();
+            let (name, file) = ("a".to_string(), "a.csv".into());
+            RawLog { name, file, motion: None, order: None, run, notes: vec![], moved: vec![] }
+        };
+        let gap = log(vec![0.0, 0.01, 0.02, 0.52, 0.53, 0.54]);
+        let note = gap.filled_gaps(Some(1.0)).unwrap();
+        assert!(note.starts_with("a: 1 gap of up to 0.500 s filled"), "{note}");
+        assert_eq!(gap.filled_gaps(None), None);
+        assert_eq!(log(vec![0.0, 0.01, 0.02]).filled_gaps(Some(1.0)), None);
     }
 }

@@ -39,6 +39,7 @@ pub fn read(
     let sources = sources(entries, folder, robot, settings)?;
     let read = sources.iter().map(|source| source.read(robot, settings));
     let mut logs = read.collect::<Result<Vec<RawLog>>>()?;
+    logs.iter_mut().for_each(|log| log.notes.extend(log.filled_gaps(settings.max_gap)));
     let names: Vec<String> = logs.iter().map(|log| log.file.display().to_string()).collect();
     let found: Vec<_> = logs.iter().map(|log| extents(&log.run)).collect();
     let (turns, notes) = missing_turns(robot, &names, &found);
