@@ -13,12 +13,13 @@ from . import errors, fleet, io, plot
 from ._abstraction import Abstraction, abstract
 from ._box import Box
 from ._built import BuiltModel, Choice, HeldOut, HorizonWidths, JointRow, model
+from ._check import Check
 from ._conform import check, conform
 from ._excite import Excitation, excite
 from ._findings import Finding, Report
 from ._flowpipe import Flowpipe, flowpipe
 from ._identify import Identification, identify
-from ._model import Check, Model
+from ._model import Model
 from ._monitor import Alarm, Leave, Monitor, monitor
 from ._polynomial import Polynomial, cos, sin, variables
 from ._prepare import prepare

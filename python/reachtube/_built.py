@@ -7,6 +7,7 @@ import logging
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from html import escape
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal
@@ -208,7 +209,24 @@ class BuiltModel(Record):
         return f"<BuiltModel {self._content['verdict']}>"
 
     def _repr_html_(self) -> str:
-        return _html.built(self, self._content["verdict"])
+        text = _html.verdict(self.useful, self._content["verdict"])
+        said = [str(finding) for finding in self.findings if finding.severity != "info"]
+        text += "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
+
+        def number(value: float | None, form: str) -> str:
+            return "-" if value is None else format(value, form)
+
+        rows = [
+            [
+                escape(row.name),
+                number(row.half_width, ".3g"),
+                number(row.ratio, ".0%"),
+                number(row.growth, ".3g"),
+            ]
+            for row in self.joints
+        ]
+        header = ["joint", "half the set [rad or m]", "of its motion", "factor, held out"]
+        return text + _html.table(header, rows)
 
 
 def model(

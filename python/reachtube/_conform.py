@@ -13,13 +13,14 @@ import numpy.typing as npt
 from . import _reachtube
 from ._abstraction import Abstraction
 from ._arrays import above_zero, names, real
-from ._logs import Logs, native_of_logs, source_for
-from ._model import Check, Model, text_of
+from ._check import Check
+from ._logs import Logs, native_of_logs
+from ._model import Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._renamed import renamed
 from ._robot import Robot
-from ._settings import Data, Group, Notion, Torque, among, differing, of_conformance
+from ._settings import Data, Group, Notion, Torque, among, of_conformance
 from .errors import ReachtubeWarning, SettingError
 
 log = logging.getLogger("reachtube")
@@ -240,13 +241,7 @@ def check(
     Check
         A check that fails is returned with witnesses, not raised.
     """
-    with shown(progress, "check") as tell:
-        return Check(
-            _reachtube.check(
-                text_of(model),
-                source_for(model, data, max_gap),
-                names(suites),
-                differing(notion, until, max_gap),
-                tell,
-            )
-        )
+    text_of(model)
+    return model.check(
+        data, suites=suites, notion=notion, until=until, max_gap=max_gap, progress=progress
+    )

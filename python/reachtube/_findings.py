@@ -6,6 +6,8 @@ import json
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from . import _html
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -64,6 +66,4 @@ class Report:
         return f"<Report: {len(self.findings)} findings>"
 
     def _repr_html_(self) -> str:
-        from . import _html
-
         return _html.report(self._sections)

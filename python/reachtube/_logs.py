@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 from . import _reachtube
-from ._arrays import above_zero
-from ._recordings import Recordings, Run, source
+from ._recordings import Recordings, Run
 from .errors import SettingError
-
-if TYPE_CHECKING:
-    from ._model import Model
 
 #: Logs: CSV files, MCAP, rosbag2 and folders of them by their paths, runs, or a data set.
 Logs: TypeAlias = (
@@ -45,14 +41,3 @@ def native_of_logs(data: Logs) -> tuple[list[str], _reachtube.Source | None]:
     if isinstance(data, Recordings) and not paths:
         return [], data._native
     return paths, Recordings(runs)._native if runs else None
-
-
-def source_for(model: Model, data: Logs, max_gap: float | None = None) -> _reachtube.Source:
-    """Return the native source of recordings that are compared with a model.
-
-    Logs for a model that `model` made are prepared as its own were.
-    """
-    if "preparation" in model._content:
-        gap = None if max_gap is None else above_zero("max_gap", max_gap)
-        return _reachtube.prepared(model._text, gap, *native_of_logs(data))
-    return source(data)  # type: ignore[arg-type]

@@ -1,26 +1,27 @@
-"""Models with their uncertainty sets, and answers of checks."""
+"""Models with their uncertainty sets."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from html import escape
 from os import PathLike, fspath
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from . import _html, _reachtube
-from ._arrays import Array, array_of
+from ._arrays import Array, above_zero, array_of, names
 from ._box import Box
 from ._bytes import checked
+from ._check import Check
 from ._files import write_new
 from ._findings import Finding, Report, findings_of
+from ._logs import Logs, native_of_logs
+from ._progress import Progress, shown
 from ._record import Record
+from ._recordings import source
 from ._robot import Robot
+from ._settings import Data, Notion, differing
 from .errors import ModelFileError, ReachtubeError, SettingError
-
-if TYPE_CHECKING:
-    from ._logs import Logs
-    from ._progress import Progress
-    from ._settings import Data, Notion
 
 
 class Model(Record):
@@ -267,17 +268,30 @@ class Model(Record):
         Check
             A check that fails is returned with witnesses, not raised.
         """
-        from ._conform import check
+        with shown(progress, "check") as tell:
+            return Check(
+                _reachtube.check(
+                    self._text,
+                    source_for(self, data, max_gap),
+                    names(suites),
+                    differing(notion, until, max_gap),
+                    tell,
+                )
+            )
 
-        return check(
-            self,
-            data,
-            suites=suites,
-            notion=notion,
-            until=until,
-            max_gap=max_gap,
-            progress=progress,
-        )
+    def _rows_of_sets(self) -> Iterator[tuple[str, str, str, float, float]]:
+        """Yield set, entry, unit, centre and radius of all entries."""
+        n = self.joints
+        units = list(self.state_units)
+        states = [f"q{j + 1}" for j in range(n)] + [f"qd{j + 1}" for j in range(n)]
+        forces = ["N" if unit == "m" else "N m" for unit in units[:n]]
+        inputs = [f"u{j + 1}" for j in range(n)]
+        boxes = [("X0", states, units, self.initial_set), ("U", inputs, forces, self.input_set)]
+        if self.noise_set is not None:
+            boxes.append(("V", states, units, self.noise_set))
+        for name, entries, own, box in boxes:
+            for k, entry in enumerate(entries):
+                yield name, entry, own[k], float(box.centre[k]), float(box.radius[k])
 
     def to_pandas(self) -> Any:
         """Return the sets as a pandas DataFrame: one row for each entry of X0, U and V."""
@@ -285,7 +299,7 @@ class Model(Record):
 
         rows = [
             {"set": name, "entry": entry, "unit": unit, "centre": centre, "radius": radius}
-            for name, entry, unit, centre, radius in _html.rows_of_sets(self)
+            for name, entry, unit, centre, radius in self._rows_of_sets()
         ]
         return pandas.DataFrame(rows)
 
@@ -296,7 +310,24 @@ class Model(Record):
         return f"<Model {words}: cost {cost}, {proof['runs']} recordings, {proof['rows']} rows>"
 
     def _repr_html_(self) -> str:
-        return _html.model(self)
+        findings = self.findings
+        of = {finding.code: finding for finding in findings}
+        text = _html.verdict(self.verified, str(findings[0]))
+        text += _html.lines(
+            each for each in findings if each.code == "cost" or each.severity != "info"
+        )
+        rows = list(self._rows_of_sets())
+        largest: dict[tuple[str, str], float] = {}
+        for name, _, unit, _, radius in rows:
+            largest[name, unit] = max(radius, largest.get((name, unit), 0.0))
+        cells = [
+            [name, entry, f"{centre:.4g}", f"{radius:.4g}", escape(unit),
+             _html.bar(radius, largest[name, unit])]
+            for name, entry, unit, centre, radius in rows
+        ]
+        text += _html.table(["set", "entry", "centre", "radius", "unit", ""], cells)
+        last = ("next-motion", "no-guarantee")
+        return text + _html.lines(of[code] for code in last if code in of)
 
 
 def text_of(model: Model) -> str:
@@ -307,78 +338,12 @@ def text_of(model: Model) -> str:
     return model._text
 
 
-class Check(Record):
-    """The answer of a check: whether recordings lie in a model's reachable set, and where not."""
+def source_for(model: Model, data: Logs, max_gap: float | None = None) -> _reachtube.Source:
+    """Return the native source of recordings that are compared with a model.
 
-    __slots__ = ()
-
-    @property
-    def conformant(self) -> bool:
-        """Whether every recording was proved to lie in the set, at its samples."""
-        return bool(self._content["conformant"])
-
-    @property
-    def violations(self) -> int:
-        """Number of rows (suite, sample, state) outside."""
-        return int(self._content["violations"]["count"])
-
-    @property
-    def rows(self) -> int:
-        """Number of rows."""
-        return int(self._content["rows"])
-
-    @property
-    def worst(self) -> dict[str, Any] | None:
-        """The value furthest outside: suite, run, time, joint, state, side and excess."""
-        worst = self._content["violations"]["worst"]
-        return None if worst is None else dict(worst)
-
-    @property
-    def suites(self) -> list[dict[str, Any]]:
-        """The same for each suite."""
-        return list(self._content["suites"])
-
-    @property
-    def trust(self) -> dict[str, Any] | None:
-        """What the check says of the next motion; ``None`` where a recording was in the fit."""
-        trust = self._content.get("trust")
-        return None if trust is None else dict(trust)
-
-    @property
-    def findings(self) -> list[Finding]:
-        """What the answer says, statement by statement: the verdict first."""
-        return findings_of(_reachtube.check_findings(self._text))
-
-    @property
-    def notes(self) -> list[str]:
-        """What a user should know about the recordings."""
-        return [str(note) for note in self._content["notes"]]
-
-    def to_pandas(self) -> Any:
-        """Return a pandas DataFrame with one row for each suite."""
-        import pandas
-
-        rows = [
-            {
-                "suite": suite["suite"],
-                "runs": suite["runs"],
-                "rows": suite["rows"],
-                "outside": suite["violations"]["count"],
-                **{
-                    key: (suite["violations"]["worst"] or {}).get(key)
-                    for key in ("run", "time", "state", "excess")
-                },
-            }
-            for suite in self._content["suites"]
-        ]
-        return pandas.DataFrame(rows)
-
-    def __bool__(self) -> bool:
-        return self.conformant
-
-    def __repr__(self) -> str:
-        words = "conformant" if self.conformant else "not conformant"
-        return f"<Check {words}: {self.violations} of {self.rows} rows outside>"
-
-    def _repr_html_(self) -> str:
-        return _html.check(self)
+    Logs for a model that `model` made are prepared as its own were.
+    """
+    if "preparation" in model._content:
+        gap = None if max_gap is None else above_zero("max_gap", max_gap)
+        return _reachtube.prepared(model._text, gap, *native_of_logs(data))
+    return source(data)  # type: ignore[arg-type]

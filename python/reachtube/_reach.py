@@ -15,8 +15,8 @@ import numpy.typing as npt
 from . import _reachtube
 from ._arrays import Array, check_choice, frozen, names, numbers
 from ._files import check_new
-from ._logs import Logs, source_for
-from ._model import Model, text_of
+from ._logs import Logs
+from ._model import Model, source_for, text_of
 from ._progress import Progress, shown
 from ._settings import Data, differing
 from ._values import Values

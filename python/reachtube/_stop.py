@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from . import _html, _reachtube
 from ._answer import Answer, Toml, infinite, toml_of
 from ._arrays import names, whole
-from ._logs import source_for
-from ._model import text_of
+from ._model import source_for, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._settings import differing

@@ -10,8 +10,7 @@ from typing import Any, Literal
 
 from . import _html, _reachtube
 from ._answer import Answer, Toml, infinite, toml_of
-from ._logs import source_for
-from ._model import Model, text_of
+from ._model import Model, source_for, text_of
 from ._progress import Progress, shown
 from .errors import SettingError
 

@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from . import _conform
 from ._abstraction import Abstraction
 from ._arrays import check_choice, names, real, whole
+from ._check import Check
 from ._conform import told
 from ._jobs import Job, Part, fleet_of, fold_of, on_dask
 from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
-from ._model import Check, Model, text_of
+from ._model import Model, text_of
 from ._points import Points
 from ._progress import Progress, shown
 from ._renamed import renamed

@@ -3,20 +3,28 @@
 
     tools/house/check.py [CHECKOUT]           check a checkout, by default this one
     tools/house/check.py --names [CHECKOUT]   list types that several files define by one name
+    tools/house/check.py --write              lower the ceilings in ceilings.toml
 
-Fails on files of one crate that import each other in a circle, on functions of more than 60 lines,
-and on Rust or Python files of more than 400 lines. Public items are those declared `pub`, functions
-of types among them; the compiler refuses `pub` for what cannot be reached from outside its crate.
-A `pub use` gives an item another path and is no item. Names are what `lib.rs` exports. Tests are
-left out, but for the lines.
+Fails on files of one crate or of the Python package that import each other in a circle, on
+functions of more than 60 lines, on Rust or Python files of more than 400 lines, and on sizes above
+their ceiling.
+
+Public items are those declared `pub`, functions of types among them; the compiler refuses `pub` for
+what cannot be reached from outside its crate. A `pub use` gives an item another path and is no
+item. Exports are the names that `lib.rs` exports. `twice` counts the types of a crate whose name
+stands in another file too, and for all crates the names that do. Tests are left out, but for the
+lines.
 """
 
 import re
 import statistics
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
+import ceilings
+import python
 import rust
 
 LONGEST_FUNCTION = 60
@@ -24,30 +32,42 @@ LONGEST_FILE = 400
 
 PUBLIC = re.compile(r"^\s*pub (?:fn|struct|enum|trait|const|static|type|mod)\b", re.MULTILINE)
 EXPORT = re.compile(r"^pub (?:const fn|fn|struct|enum|trait|const|static|type|mod) (\w+)", re.M)
-COLUMNS = "crate lines public names circles functions median longest".split()
+TYPE = re.compile(r"^\s*(?:pub(?:\([^)]*\))? )?(?:struct|enum|trait) (\w+)", re.M)
+COLUMNS = "crate lines types twice public exports needs circles functions median longest".split()
 
 
 def main(arguments):
-    names = "--names" in arguments
-    given = [argument for argument in arguments if argument != "--names"]
+    options = {argument for argument in arguments if argument.startswith("--")}
+    given = [argument for argument in arguments if argument not in options]
     root = Path(given[0] if given else Path(__file__).parents[2]).resolve()
     folders = [*sorted(path.parent for path in root.glob("crates/*/src")), root / "python"]
     crates = {folder: rust.crate(folder) for folder in folders if (folder / "src").is_dir()}
-    if names:
-        print("\n".join(types_of_one_name(root, crates)))
+    twice = names_of_several_files(crates)
+    if "--names" in options:
+        for name, files in sorted(twice.items(), key=lambda item: (-len(item[1]), item[0])):
+            print(f"{name}: {', '.join(str(file.relative_to(root)) for file in files)}")
         return 0
-    rows = [size(folder, modules) for folder, modules in crates.items()]
-    total = ["all", *(sum(row[i] for row in rows) for i in range(1, 6)), "", ""]
+    rows = [size(folder, modules, twice) for folder, modules in crates.items()]
+    total = ["all", *(sum(row[i] for row in rows) for i in range(1, 9)), "", ""]
+    total[COLUMNS.index("twice")] = len(twice)
     for row in [COLUMNS, *rows, total]:
         print("{:12}".format(row[0]) + "".join(f"{value:>10}" for value in row[1:]))
-    faults = [fault for folder, modules in crates.items() for fault in faults_of(folder, modules)]
-    faults += long_files(root)
-    print("\n".join(faults) or "No circle of imports, and no function or file that is too long.")
+    file = root / "tools/house/ceilings.toml"
+    sizes = {"public-items": total[4], "names-in-two-files": total[3],
+             **{f"lines.{row[0]}": row[1] for row in rows}}
+    if "--write" in options:
+        ceilings.write(file, ceilings.lowered(ceilings.read(file), sizes))
+    package = root / "python/reachtube"
+    modules_of = crates | {package: python.package(package)}
+    faults = [fault for item in modules_of.items() for fault in circles_of(*item)]
+    faults += [fault for modules in crates.values() for fault in long_functions(root, modules)]
+    faults += [*long_files(root), *ceilings.faults(ceilings.read(file), sizes)]
+    print("\n".join(faults) or "No circle of imports, nothing too long, no size above its ceiling.")
     return 1 if faults else 0
 
 
-def faults_of(folder, modules):
-    """Yields circles and long functions of a crate."""
+def circles_of(folder, modules):
+    """Yields the circles of a crate or package in words."""
     for files, steps in circles(modules):
         yield f"{folder.name}: {len(files)} files import each other in a circle:"
         yield from (f"    {file.relative_to(folder.parent)}" for file in files)
@@ -55,11 +75,14 @@ def faults_of(folder, modules):
         for one, line, other in steps:
             one, other = one.relative_to(folder.parent), other.relative_to(folder.parent)
             yield f"    {one}:{line} imports {other}"
+
+
+def long_functions(root, modules):
     for module in modules:
         for name, line, length in rust.functions(module.text):
             if length > LONGEST_FUNCTION:
-                yield f"{module.file.relative_to(folder.parent)}:{line}: `{name}` has {length} " \
-                      f"lines, more than {LONGEST_FUNCTION}"
+                yield f"{module.file.relative_to(root)}:{line}: `{name}` has {length} lines, " \
+                      f"more than {LONGEST_FUNCTION}"
 
 
 def circles(modules):
@@ -100,12 +123,16 @@ def long_files(root):
             yield f"{file}: {lines} lines, more than {LONGEST_FILE}; does it hold two concepts?"
 
 
-def size(folder, modules):
+def size(folder, modules, twice):
+    """Returns the row of a crate."""
     lines = sum(file.read_text().count("\n") for file in (folder / "src").rglob("*.rs"))
     public = sum(len(PUBLIC.findall(module.text)) for module in modules)
+    types = [name for module in modules for name in TYPE.findall(module.text)]
+    needs = tomllib.loads((folder / "Cargo.toml").read_text()).get("dependencies", {})
     lengths = [length for module in modules for _, _, length in rust.functions(module.text)]
     in_circles = sum(len(files) for files, _ in circles(modules))
-    return [folder.name, lines, public, len(exports(folder)), in_circles, len(lengths),
+    return [folder.name, lines, len(types), sum(name in twice for name in types), public,
+            len(exports(folder)), len(needs), in_circles, len(lengths),
             statistics.median(lengths), max(lengths)]
 
 
@@ -117,17 +144,13 @@ def exports(folder):
     return {*EXPORT.findall(text), *(name for use in declared for _, name in rust.paths_of(use))}
 
 
-def types_of_one_name(root, crates):
-    """Yields the types that more than one file defines by one name, with the files."""
+def names_of_several_files(crates):
+    """Returns the names of types that more than one file defines, with the files."""
     files = {}
-    for modules in crates.values():
-        for module in modules:
-            for name in re.findall(r"^\s*(?:pub(?:\([^)]*\))? )?(?:struct|enum|trait) (\w+)",
-                                   module.text, re.MULTILINE):
-                files.setdefault(name, []).append(str(module.file.relative_to(root)))
-    for name, places in sorted(files.items(), key=lambda item: (-len(item[1]), item[0])):
-        if len(places) > 1:
-            yield f"{name}: {', '.join(places)}"
+    for module in (module for modules in crates.values() for module in modules):
+        for name in TYPE.findall(module.text):
+            files.setdefault(name, []).append(module.file)
+    return {name: places for name, places in files.items() if len(places) > 1}
 
 
 if __name__ == "__main__":

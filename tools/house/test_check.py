@@ -4,7 +4,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import ceilings
 import check
+import python
 import rust
 
 
@@ -52,6 +54,43 @@ class Circles(unittest.TestCase):
                     "#[cfg(test)]\nmod tests { use crate::a::A; }",
         }
         self.assertEqual(names_in_circles(files), [])
+
+
+    def test_python_files_that_import_each_other(self):
+        files = {
+            "__init__.py": "from ._a import A\n",
+            "_a.py": "from . import _b, errors\n",
+            "_b.py": "def f():\n    from ._c import C\n",
+            "_c.py": "import typing\nif typing.TYPE_CHECKING:\n    from ._a import A\n",
+            "errors.py": "from os import path\n",
+        }
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in files.items():
+                Path(folder, name).write_text(text)
+            (circle, _), = check.circles(python.package(Path(folder)))
+        self.assertEqual([file.name for file in circle], ["_a.py", "_b.py", "_c.py"])
+
+
+class Ceilings(unittest.TestCase):
+    def test_they_fall_and_never_rise(self):
+        before = {"public-items": 7, "lines.a": 100, "lines.gone": 50}
+        sizes = {"public-items": 8, "lines.a": 40, "lines.new": 101}
+        after = ceilings.lowered(before, sizes)
+        self.assertEqual(after, {"public-items": 7, "lines.a": 50, "lines.new": 150})
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder, "ceilings.toml")
+            self.assertEqual(ceilings.read(file), {})
+            ceilings.write(file, after)
+            self.assertEqual(ceilings.read(file), after)
+        fault, = ceilings.faults(after, sizes)
+        self.assertIn("public-items is 8, above its ceiling 7", fault)
+        self.assertIn("give the reason", fault)
+        self.assertIn("has no ceiling", *ceilings.faults(before, {"lines.new": 1}))
+
+    def test_a_name_in_two_files_is_counted_once(self):
+        files = {"lib.rs": "mod a; mod b;", "a.rs": "pub struct A; enum B {}", "b.rs": "trait A {}"}
+        twice = check.names_of_several_files({"crate": modules(files)})
+        self.assertEqual(list(twice), ["A"])
 
 
 class Functions(unittest.TestCase):
