@@ -10,10 +10,10 @@ pub use reachtube_conform::{
     self as conform, Check, Conformance, Keep, Model, Problem, Progress, Settings, Setup, Silent,
     Tube, check, conform, explain, reach,
 };
-#[cfg(feature = "report")]
-pub use reachtube_experiment::{Error, Result, campaign, demo, reproduce, virtual_robot};
 pub use reachtube_files::{TOOL, printable, write};
 pub use reachtube_identify::{self as identify, Identification, identify};
+#[cfg(feature = "report")]
+pub use reachtube_lab::{Error, Result, campaign, demo, reproduce, virtual_robot};
 #[cfg(feature = "report")]
 pub use reachtube_page as page;
 pub use reachtube_pipeline as pipeline;

@@ -1,7 +1,7 @@
 //! The names of a conformance from recordings to an answer.
 
 #[cfg(feature = "report")]
-pub use reachtube_experiment::Result;
+pub use reachtube_lab::Result;
 
 pub use reachtube_conform::{
     Answer, Check, Finding, Job, Model, Noise, Notion, Settings, Silent, Tube,

@@ -94,13 +94,13 @@ pub struct Table1 {
 /// # Examples
 ///
 /// ```
-/// use reachtube_experiment::reproduce::{Table1Options, table1};
+/// use reachtube_lab::reproduce::{Table1Options, table1};
 /// use reachtube_robot::Robot;
 ///
 /// let options = Table1Options { motions: 2, orders: vec![1], ..Default::default() };
 /// let table = table1(&Robot::lwa4p(), &options, &|_done, _total| ())?;
 /// assert!(table.cells.iter().all(|cell| cell.diverged == 0 && cell.mean.unwrap() < 0.1));
-/// # Ok::<(), reachtube_experiment::Error>(())
+/// # Ok::<(), reachtube_lab::Error>(())
 /// ```
 pub fn table1(
     robot: &Robot,

@@ -123,12 +123,12 @@ type Campaign = (Stated, Vec<(f64, f64)>);
 /// # Examples
 ///
 /// ```no_run
-/// use reachtube_experiment::reproduce::{CoverageOptions, coverage};
+/// use reachtube_lab::reproduce::{CoverageOptions, coverage};
 ///
 /// let few = CoverageOptions { campaigns: 1, next: 5, seed: 1 };
 /// let coverage = coverage(&few, &|_done, _total| ())?;
 /// assert_eq!(coverage.rows.len(), 8);
-/// # Ok::<(), reachtube_experiment::Error>(())
+/// # Ok::<(), reachtube_lab::Error>(())
 /// ```
 pub fn coverage(
     options: &CoverageOptions,

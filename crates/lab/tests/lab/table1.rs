@@ -1,7 +1,7 @@
 //! Tests of the models on random motions against Table I of the paper.
 
 use reachtube_abstraction::ModelKind::{One, Three, Two};
-use reachtube_experiment::reproduce::{Paper, Speed, Table1, Table1Options, table1};
+use reachtube_lab::reproduce::{Paper, Speed, Table1, Table1Options, table1};
 use reachtube_robot::Robot;
 
 fn table(orders: &[u32], motions: usize) -> Table1 {

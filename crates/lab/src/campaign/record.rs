@@ -49,7 +49,7 @@ pub struct RecordedCampaign {
 /// # Examples
 ///
 /// ```
-/// use reachtube_experiment::campaign::{CampaignOptions, record};
+/// use reachtube_lab::campaign::{CampaignOptions, record};
 /// use reachtube_recordings::{DataSet, RunSource};
 /// use reachtube_robot::Robot;
 ///
@@ -59,7 +59,7 @@ pub struct RecordedCampaign {
 /// let recorded = record(&Robot::lwa4p(), &options, folder.path(), &|_done, _total| ())?;
 /// assert_eq!((recorded.runs, recorded.recordings), (2, 3));
 /// assert_eq!(DataSet::open(folder.path())?.suites()[0].name, "M1a");
-/// # Ok::<(), reachtube_experiment::Error>(())
+/// # Ok::<(), reachtube_lab::Error>(())
 /// ```
 pub fn record(
     robot: &Robot,

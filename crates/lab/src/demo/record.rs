@@ -41,7 +41,7 @@ pub struct RecordedDemo {
 /// # Examples
 ///
 /// ```
-/// use reachtube_experiment::demo::{DemoOptions, record};
+/// use reachtube_lab::demo::{DemoOptions, record};
 /// use reachtube_recordings::{DataSet, RunSource};
 /// use reachtube_robot::Robot;
 ///
@@ -52,7 +52,7 @@ pub struct RecordedDemo {
 /// assert_eq!(recorded.training, ["M1a", "M1b"]);
 /// assert_eq!(recorded.check, ["M2a", "M2b"]);
 /// assert_eq!(DataSet::open(folder.path())?.runs().len(), 8);
-/// # Ok::<(), reachtube_experiment::Error>(())
+/// # Ok::<(), reachtube_lab::Error>(())
 /// ```
 pub fn record(robot: &Robot, options: &DemoOptions, folder: &Path) -> Result<RecordedDemo> {
     options.validate()?;

@@ -1,6 +1,6 @@
 //! The bounds for the next motion against virtual campaigns, in which the truth is known.
 
-use reachtube_experiment::reproduce::{Coverage, CoverageOptions, coverage};
+use reachtube_lab::reproduce::{Coverage, CoverageOptions, coverage};
 
 fn simulate(campaigns: usize, next: usize) -> Coverage {
     let coverage = coverage(&CoverageOptions { campaigns, next, seed: 7 }, &|_, _| ()).unwrap();
