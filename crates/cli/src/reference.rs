@@ -12,8 +12,8 @@ const OPENING: &str = "\
 # Command reference
 
 `reachtube man --markdown` makes this page from the command's own definitions; a test compares the
-two. `reachtube COMMAND --help-all` has examples and remarks too. [Commands](commands.md) describes
-what all commands have in common.
+two. `reachtube COMMAND --help-all` has examples and remarks too. [The reference](reference.md)
+describes output, exit codes, findings and errors.
 
 The exit code of every command is 0 for done, 1 for not conformant and 2 for an error. Where a
 command means something else by them, its section says so.

@@ -50,7 +50,7 @@ fn with_file(
     path: &Path,
 ) -> Result<Result<ArgMatches, clap::Error>> {
     let text =
-        reachtube_files::read_text(path, "give a settings file as docs/commands.md describes")?;
+        reachtube_files::read_text(path, "give a settings file as docs/reference.md describes")?;
     let file = SettingsFile::parse(path, &text)?;
     let at = line.iter().position(|argument| argument == COMMAND).unwrap_or(line.len() - 1) + 1;
     let on_line = |key: &str| given.value_source(&id(key)) == Some(ValueSource::CommandLine);

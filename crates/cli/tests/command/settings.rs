@@ -83,7 +83,7 @@ fn wrong_files_are_refused_with_the_line() {
         lab.run("conform --settings settings.toml").fails_with(parts);
     }
     lab.run("conform --settings nowhere.toml")
-        .fails_with(&["nowhere.toml: cannot read", "docs/commands.md"]);
+        .fails_with(&["nowhere.toml: cannot read", "docs/reference.md"]);
     lab.write("settings.toml", "robot = \"arm.toml\"\n");
     let incomplete = lab.run("conform --settings settings.toml").exits(2).stderr;
     assert!(incomplete.contains("--data") && !incomplete.contains("\n  --robot"), "{incomplete}");

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 macro_rules! codes {
     ($($(#[doc = $doc:literal])* $code:ident = $name:literal,)*) => {
         /// What a [`Finding`](crate::Finding) is about. Codes are stable; the words of a finding
-        /// are not. They are listed in docs/findings.md.
+        /// are not. They are listed in docs/reference.md.
         #[derive(
             Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
         )]
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn every_code_is_in_the_docs() {
-        let docs = include_str!("../../../../docs/findings.md");
+        let docs = include_str!("../../../../docs/reference.md");
         for code in Code::ALL {
             assert!(docs.contains(&format!("| `{}` |", code.name())), "{}", code.name());
             assert_eq!(serde_json::to_value(code).unwrap(), code.name());
