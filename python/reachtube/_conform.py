@@ -51,7 +51,6 @@ def conform(
     equations: Literal["model", "robot"] = "model",
     calibrate: Sequence[str] = (),
     method: Literal["program", "bisection"] = "program",
-    explain: Literal["default"] | tuple[float, float] | None = "default",
     until: float | None = None,
     horizon: float | None = None,
     max_gap: float | None = None,
@@ -115,10 +114,6 @@ def conform(
         Motions that are held out from the fit, to which the sets are then scaled.
     method
         Programs, or the paper's bisection.
-    explain
-        Tolerances, rad and rad/s, within which a motion of the model itself is searched for near
-        each recording. By default, it is searched for near the recordings that decide the sets of
-        a model that is not linear.
     until
         Samples later than this many seconds after the first are not used.
     horizon

@@ -17,7 +17,7 @@ from ._robot import Robot, native_of
 from .errors import SettingError
 
 Torque: TypeAlias = Literal["compensated", "motor", "link"]
-Notion: TypeAlias = Literal["hull", "phase-plane", "exact", "trace"]
+Notion: TypeAlias = Literal["hull", "phase-plane", "exact"]
 Group: TypeAlias = Literal["inertia", "viscous", "cubic", "coulomb", "warm-up", "payload"]
 
 #: Recordings: a data set, runs, or the path of a folder with its index.
@@ -65,7 +65,7 @@ def of_conformance(robot: Robot | Abstraction, *, torque: Torque, **given: Any) 
         native_of(robot)
     limits = _limits(given.pop("until", None), given.pop("max_gap", None))
     kind, order = given.pop("paper_model", 1), given.pop("order", 1)
-    expansion, explain = given.pop("expansion", None), given.pop("explain", "default")
+    expansion = given.pop("expansion", None)
     settings: dict[str, Any] = {"torque": torque, **given}
     if isinstance(robot, Abstraction):
         if (kind, order, expansion) != (1, 1, None):
@@ -81,12 +81,5 @@ def of_conformance(robot: Robot | Abstraction, *, torque: Torque, **given: Any) 
             settings[name] = {key: _radii(name, given[name], robot.joints)}
     if given.get("sensor_noise") is not None:
         settings["sensor_noise"] = _radii("sensor_noise", given["sensor_noise"], robot.joints)
-    if explain is None:
-        settings["explain"] = None
-    elif not (isinstance(explain, str) and explain == "default"):
-        both = finite("explain", explain)
-        if len(both) != 2:
-            raise SettingError(f"explain is {explain!r}; give two tolerances, rad and rad/s")
-        settings["explain"] = {"position": both[0], "velocity": both[1]}
     settings.update(limits)
     return json_of("settings", settings)

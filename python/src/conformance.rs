@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use pyo3::prelude::*;
 use reachtube::abstraction::ExpansionPoint;
 use reachtube::conform::result::FrontEnd;
-use reachtube::conform::settings::Tolerance;
 use reachtube::conform::{
     Answer, Basis, CheckJob, FitSettings, Group, Job, Keep, Model, Opened, Settings, Setup,
     SuiteReach,
@@ -21,16 +20,14 @@ use crate::recordings::{NativeSource, SharedSource};
 use crate::robot::NativeRobot;
 use crate::watched::watched;
 
-/// Returns settings from the defaults and a JSON object with the settings that differ, and the
-/// tolerance of explanations if it is given.
-fn settings(text: &str, joints: usize) -> Result<(Settings, Option<Option<Tolerance>>)> {
+/// Returns settings from the defaults and a JSON object with the settings that differ.
+fn settings(text: &str, joints: usize) -> Result<Settings> {
     let mut given: Map<String, Value> = serde_json::from_str(text).map_err(Failure::setting)?;
     let torque = given.remove("torque").unwrap_or_default();
     let torque: Torque = serde_json::from_value(torque)
         .map_err(|error| Failure::Setting(format!("torque: {error}")))?;
     let expansion = take::<Vec<f64>>(&mut given, "expansion")?.unwrap_or_default();
     let max_gap = take::<f64>(&mut given, "max_gap")?;
-    let chooses_explain = given.contains_key("explain");
     let defaults = Settings {
         expansion_point: ExpansionPoint::from_values(&expansion, joints)?,
         ..Settings::new(torque, joints)
@@ -45,8 +42,7 @@ fn settings(text: &str, joints: usize) -> Result<(Settings, Option<Option<Tolera
     let settings: Settings = serde_json::from_value(all).map_err(Failure::setting)?;
     let settings = Settings { gap_limit: max_gap.into(), ..settings };
     settings.validate(joints)?;
-    let explain = chooses_explain.then_some(settings.explain);
-    Ok((settings, explain))
+    Ok(settings)
 }
 
 fn take<T: serde::de::DeserializeOwned>(
@@ -72,8 +68,8 @@ pub(crate) fn basis(
 
 /// Returns the setup of a conformance, whose settings are the defaults but for those given.
 pub(crate) fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
-    let (settings, explain) = settings(settings_text, basis.joints())?;
-    Ok(basis.setup(settings, explain)?)
+    let settings = settings(settings_text, basis.joints())?;
+    Ok(basis.setup(settings)?)
 }
 
 /// Finds the smallest sets, and returns the model file's text and notes about the recordings.
@@ -100,16 +96,13 @@ pub(crate) fn conform(
     let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
     let source = source.source.clone();
     watched(py, progress.as_ref(), move |watch| {
-        let (settings, explain) = self::settings(&settings, basis.joints())?;
+        let settings = self::settings(&settings, basis.joints())?;
         let torque = settings.torque;
-        let mut job = Job::new(basis, source, torque)
+        let job = Job::new(basis, source, torque)
             .settings(settings)
             .suites(suites)
             .fit(fit_settings(&fit, pull)?)
             .resume(resume);
-        if let Some(tolerance) = explain {
-            job = job.explain(tolerance);
-        }
         let mut answer = job.run(watch)?;
         if let Some(preparation) = &preparation {
             let preparation = serde_json::from_str(preparation).map_err(Failure::setting)?;

@@ -135,7 +135,6 @@ impl From<conform::Error> for Failure {
             conform::Error::ModelFile { .. } => Self::ModelFile(text),
             conform::Error::SettingCount { .. }
             | conform::Error::SettingRange { .. }
-            | conform::Error::Trace(_)
             | conform::Error::NotPoints
             | conform::Error::Calibration(_) => Self::Setting(text),
             conform::Error::Abstraction(error) => error.into(),

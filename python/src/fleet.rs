@@ -51,10 +51,7 @@ impl NativeFleet {
         settings: String,
     ) -> PyResult<Self> {
         let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
-        let setup = watched(py, None, move |_| {
-            // No single recording is there to be explained.
-            Ok(setup(basis, &settings)?.explain(None))
-        })?;
+        let setup = watched(py, None, move |_| setup(basis, &settings))?;
         Ok(Self { setup: Arc::new(setup), model: None })
     }
 
@@ -65,7 +62,7 @@ impl NativeFleet {
             let (model, setup) = Model::parse(&model, Path::new("model"))?;
             let given: Map<String, Value> =
                 serde_json::from_str(&settings).map_err(Failure::setting)?;
-            let setup = differing(setup, given)?.explain(None);
+            let setup = differing(setup, given)?;
             Ok(Self { setup: Arc::new(setup), model: Some(Arc::new(model)) })
         })
     }

@@ -308,10 +308,6 @@ def test_wrong_manifests_are_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(rt.ReachtubeError, match="row 0"):
         fleet.conform(robot, tmp_path / "empty.parquet", torque="motor")
-    with pytest.raises(rt.ReachtubeError, match="notion trace"):
-        fleet.conform(
-            robot, tmp_path / "empty.parquet", torque="motor", notion="trace", noise=[1.0, 1.0]
-        )
 
 
 @pytest.fixture

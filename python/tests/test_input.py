@@ -23,7 +23,6 @@ def conform(robot: Any, data: Any, **settings: Any) -> object:
     [
         ({"suites": 3}, "3 is no name and no list of names"),
         ({"until": "1"}, "until has the type"),
-        ({"explain": 5}, "explain is 5; give two tolerances"),
         ({"noise": [float("nan"), 1.0]}, r"noise is \[nan, 1.0\]; give finite numbers"),
         ({"order": "x"}, "order is 'x' of type str"),
         ({"order": -1}, "order is -1; give 1 to 255"),

@@ -116,15 +116,6 @@ pub(crate) enum Error {
         /// The companion of the new URDF.
         path: PathBuf,
     },
-    /// `--explain` is neither `none` nor two numbers.
-    #[error(
-        "--explain: \"{given}\" is neither none nor 2 numbers; give none, or 2 numbers separated \
-         by a comma: rad, rad/s"
-    )]
-    ExplainTolerance {
-        /// The value given.
-        given: String,
-    },
     /// An option that takes one number per state has something else.
     #[error(
         "{option}: {problem}; give {words}2 numbers (positions, velocities), or {states} (one \

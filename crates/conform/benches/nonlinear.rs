@@ -5,7 +5,7 @@ use std::path::Path;
 
 use divan::Bencher;
 use reachtube_abstraction::{Abstraction, ModelKind};
-use reachtube_conform::settings::{Method, Tolerance};
+use reachtube_conform::settings::Method;
 use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
@@ -43,10 +43,4 @@ fn programs(bencher: Bencher, (model, order): (u32, u32)) {
 fn bisection_of_model_1_of_order_3(bencher: Bencher) {
     let abstraction = Abstraction { model: ModelKind::One, order: 3 };
     run(bencher, |settings| Settings { abstraction, method: Method::Bisection, ..settings });
-}
-
-/// The linear model, and the closest motion to each of the 73 recordings.
-#[divan::bench(sample_count = 3, sample_size = 1)]
-fn explanations(bencher: Bencher) {
-    run(bencher, |settings| Settings { explain: Some(Tolerance::default()), ..settings });
 }

@@ -163,9 +163,6 @@ impl Check {
         findings.extend(Finding::points(verdict, model.settings.states));
         let furthest = verdict.points.as_ref().and_then(|points| points.worst.as_ref());
         findings.extend(furthest.map(|worst| Finding::furthest_point(worst, &kinds)));
-        if let Some(traces) = &verdict.traces {
-            findings.push(Finding::traces(traces, verdict.runs, model.settings.disturbance));
-        }
         let worst = verdict.violations.worst.as_ref();
         findings.extend(worst.map(|worst| Finding::furthest_value(worst, &kinds)));
         findings.extend(verdict.lost.iter().map(Finding::from));

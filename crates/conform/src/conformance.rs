@@ -1,6 +1,5 @@
 //! The whole of a conformance: from a problem to sets that were proved to enclose its recordings.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use reachtube_scalar::rounding::add_down;
@@ -12,7 +11,6 @@ use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
 use crate::data::settings::check_allowance;
 use crate::error::Result;
-use crate::explain::explanation::{Explanation, explain_some};
 use crate::next_motion::allowance::AllowanceNeeded;
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::{Calibration, calibrate, not_smallest};
@@ -86,9 +84,6 @@ pub struct Conformance {
     /// The recorded values that touch the reachable set, the closest first; the linearised set
     /// where the model is not linear.
     pub tight: Vec<Witness>,
-    /// How close a motion of the model comes to each run, or to each that decides the sets, where
-    /// the settings ask for it.
-    pub explanations: Vec<Explanation>,
     /// Implausible results, and the most likely cause.
     pub warnings: Vec<Warning>,
     /// How much the sets say about the motion of each joint.
@@ -199,7 +194,6 @@ fn judged(
         tight.extend(decide.map(|edge| Witness::new(problem, row, edge)));
     })?;
     tight.sort_by(|a, b| b.excess.total_cmp(&a.excess));
-    let explanations = explanations(problem, &tube.sets, &tight)?;
     let fit = NominalFit::new(problem)?;
     let input_error = InputError::of_problem(problem)?;
     let allowance_needed =
@@ -233,26 +227,10 @@ fn judged(
         stiction: Vec::new(),
         search,
         tight,
-        explanations,
         input_error,
         any_run: if is_as_found { AnyRun::new(problem)? } else { None },
         tube,
     })
-}
-
-/// Explains the runs that decide the sets, or all, if the settings ask for it.
-fn explanations(
-    problem: &Problem,
-    sets: &UncertaintySets,
-    tight: &[Witness],
-) -> Result<Vec<Explanation>> {
-    if problem.settings().explain.is_none() {
-        return Ok(Vec::new());
-    }
-    let deciding: BTreeSet<&str> = tight.iter().map(|witness| &*witness.run).collect();
-    let decides = |run| deciding.contains(&*problem.entry(run).file);
-    let all = problem.setup().explains_all;
-    explain_some(problem, sets, |run| all || decides(run))
 }
 
 impl Conformance {

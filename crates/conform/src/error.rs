@@ -106,9 +106,6 @@ pub enum Error {
     /// U was to cover stiction, and cannot.
     #[error("U cannot be widened for stiction: {0}")]
     Stiction(&'static str),
-    /// The notion trace was asked of a problem that it is not for.
-    #[error("the notion trace {0}")]
-    Trace(&'static str),
     /// A certificate was asked of hulls, or of a model that is not linear.
     #[error(
         "a certificate is about points in the reachable set of a linear model; ask for them by the \
@@ -169,7 +166,6 @@ impl Error {
             Self::Unbounded { .. } => vec![Setting::new("box", ""), Setting::new("most-boxes", "")],
             Self::StartsOutsideBox { .. } => vec![Setting::new("box", "")],
             Self::Equations => vec![Setting::new("equations", "model")],
-            Self::Trace(_) => vec![Setting::new("noise", "0.001,0.01")],
             Self::NotPoints => vec![Setting::new("notion", "exact")],
             Self::Calibration(advice) | Self::Fold(advice) => advice.settings.clone(),
             Self::RunsAway { time, .. } => {

@@ -10,7 +10,7 @@ use reachtube_robot::Robot;
 use crate::answer::Answer;
 use crate::data::notion::Notion;
 use crate::data::problem::{Keep, Problem};
-use crate::data::settings::{Settings, Tolerance};
+use crate::data::settings::Settings;
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::group::{FitSettings, Group};
@@ -51,8 +51,6 @@ pub struct Job {
     source: Box<dyn RunSource>,
     suites: Vec<String>,
     settings: Settings,
-    /// The tolerance of explanations, where it was chosen.
-    explain: Option<Option<Tolerance>>,
     fit: Option<FitSettings>,
     keeps_runs: bool,
     is_certified: bool,
@@ -93,33 +91,24 @@ impl Basis {
         })
     }
 
-    /// Makes the setup of a conformance. Explanations of all runs are searched for within
-    /// `explain`. If that was not chosen, the runs that decide the sets of a model that is not
-    /// linear are explained: the verdict on an outer enclosure needs it more, and the cost does not
-    /// grow with the runs.
+    /// Makes the setup of a conformance.
     ///
     /// # Errors
     ///
     /// As [`Setup::new`]; an abstraction that does not fit the settings; a robot that is not
     /// physical.
-    pub fn setup(self, settings: Settings, explain: Option<Option<Tolerance>>) -> Result<Setup> {
-        let setup = match self {
+    pub fn setup(self, settings: Settings) -> Result<Setup> {
+        match self {
             Self::Robot(robot) => {
                 robot.check_physical()?;
-                Setup::new(*robot, settings)?
+                Setup::new(*robot, settings)
             }
             Self::Abstraction(model) => {
                 let setup = Setup::with_abstraction(*model, settings)?;
                 setup.robot.check_physical()?;
-                setup
+                Ok(setup)
             }
-        };
-        let is_linear = setup.dynamics.linear_system().is_some();
-        Ok(match explain {
-            Some(tolerance) => setup.explain(tolerance),
-            None if is_linear => setup.explain(None),
-            None => setup.explain_deciding(),
-        })
+        }
     }
 }
 
@@ -132,7 +121,6 @@ impl Job {
             basis,
             source: Box::new(source),
             suites: Vec::new(),
-            explain: None,
             fit: None,
             keeps_runs: false,
             is_certified: false,
@@ -146,8 +134,7 @@ impl Job {
         Self { suites: names.into_iter().map(Into::into).collect(), ..self }
     }
 
-    /// Replaces all settings. What they say of explanations does not count:
-    /// [`explain`](Self::explain) chooses them.
+    /// Replaces all settings.
     #[must_use]
     pub fn settings(self, settings: Settings) -> Self {
         Self { settings, ..self }
@@ -158,13 +145,6 @@ impl Job {
     pub fn notion(mut self, notion: Notion) -> Self {
         self.settings.notion = notion;
         self
-    }
-
-    /// Searches for a motion of the model near each recording, or for none. By default, a model
-    /// that is not linear has one for each recording that decides its sets.
-    #[must_use]
-    pub fn explain(self, tolerance: Option<Tolerance>) -> Self {
-        Self { explain: Some(tolerance), ..self }
     }
 
     /// Fits the nominal model for small sets first.
@@ -198,7 +178,7 @@ impl Job {
     /// Settings that do not fit each other, the robot or the model, all before anything is read; as
     /// [`Problem::read`].
     pub fn read(self, progress: &dyn Progress) -> Result<Problem> {
-        let setup = self.basis.setup(self.settings, self.explain)?;
+        let setup = self.basis.setup(self.settings)?;
         let has_points =
             setup.settings.notion.asks_points() && setup.dynamics.linear_system().is_some();
         if self.is_certified && !has_points {

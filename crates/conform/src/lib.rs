@@ -3,9 +3,8 @@
 //!
 //! A [`Problem`] is a model, [`Settings`] and recordings that are read once. [`conform`] finds its
 //! sets, [`Model`] writes them to a file, [`check()`] compares other recordings with the reachable
-//! sets ([`Tube`]) of a model, [`reach()`] returns these sets at samples and between them, and
-//! [`explain()`] searches for the motion of the model closest to each run. A [`Job`] runs all of
-//! it, as the command does.
+//! sets ([`Tube`]) of a model, and [`reach()`] returns these sets at samples and between them. A
+//! [`Job`] runs all of it, as the command does.
 //!
 //! The parts of an answer are in the modules: findings and the report in [`result`], what a model
 //! file holds in [`model`], [`mod@fit`] and [`next_motion`], warnings in [`plausibility`],
@@ -21,7 +20,6 @@ pub mod claim;
 mod conformance;
 pub mod data;
 mod error;
-pub mod explain;
 pub mod fit;
 pub mod fleet;
 mod job;
@@ -53,7 +51,6 @@ pub use data::recordings::Recordings;
 pub use data::settings::{self, Noise, Settings};
 pub use data::setup::Setup;
 pub use error::{Error, Result};
-pub use explain::explanation::explain;
 pub use fit::fit::fit;
 pub use fit::group::{FitSettings, Group};
 pub use job::{Basis, Job};

@@ -64,7 +64,7 @@ fn verdict(sources: &Sources) -> Verdict {
     let headline = check.findings.first().into_iter().chain(beside);
     let words: Vec<String> = headline.map(|found| sentence(sources, found)).collect();
     let warnings = model.warnings.iter().map(Finding::from);
-    let mut proved = of_check(&[Code::Traces, Code::Points, Code::Rows]);
+    let mut proved = of_check(&[Code::Points, Code::Rows]);
     let band = "The grey band is an outer bound of the model's reachable set at the samples";
     proved.push(match model.noise_set {
         None => format!("{band}."),
@@ -76,7 +76,6 @@ fn verdict(sources: &Sources) -> Verdict {
     if model.settings.states == States::Positions {
         not_proved.push("Velocities are not compared with the set, and may lie outside it.".into());
     }
-    not_proved.extend(of_codes(sources, &model.findings(), &[Code::Explanations]));
     not_proved.extend(of_check(&[Code::SetLost]));
     Verdict {
         ok: check.verdict.conformant,

@@ -8,7 +8,7 @@ pub use reachtube_abstraction::{
 };
 pub use reachtube_conform::{
     self as conform, Check, Conformance, Keep, Model, Problem, Progress, Settings, Setup, Silent,
-    Tube, check, conform, explain, reach,
+    Tube, check, conform, reach,
 };
 pub use reachtube_files::{TOOL, printable, write};
 pub use reachtube_identify::{self as identify, Identification, identify};

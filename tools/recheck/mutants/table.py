@@ -74,7 +74,6 @@ SETS = [
     ("weights doubled", entry("settings.weights", {"given": [2.0] * 12}), 1),
     ("notion exact", entry("settings.notion", "exact"), 2),
     ("notion phase-plane", entry("settings.notion", "phase-plane"), 2),
-    ("notion trace", entry("settings.notion", "trace"), 2),
     ("a notion that is unknown", entry("settings.notion", "all"), 3),
     ("a constant disturbance", entry("settings.disturbance", "constant"), 1),
     ("a measurable disturbance, with the old cost", entry("settings.disturbance", "measurable"), 1),

@@ -12,7 +12,6 @@ NOTIONS = {
     "hull": "each state in the interval hull of the reachable set",
     "phase-plane": "position and velocity of each joint together in the reachable set",
     "exact": "all states together in the reachable set",
-    "trace": "one motion of the model through all samples of each recording",
 }
 
 
@@ -35,22 +34,19 @@ class Claim:
         return cls(notion)
 
     def needs_points(self, model, certificate, every):
-        """Notes what is missing for the points and motions of the notion."""
+        """Notes what is missing for the points of the notion."""
         if self.notion == "hull":
             return
-        asked = "phase-plane" if self.notion == "phase-plane" else "exact"
         if model.polynomials is not None:
             self.missing.append("points of a model that is not linear are not judged here")
         elif certificate is None:
             self.missing.append("the certificate that `conform --certificate` writes; give it with "
                                 "--certificate")
-        elif asked == "exact" and certificate.notion != "exact":
+        elif self.notion == "exact" and certificate.notion != "exact":
             self.missing.append(f"a certificate of the notion exact: this one is of "
                                 f"{certificate.notion}")
         elif every > 1:
             self.missing.append(f"the points of all samples: --every {every} leaves most out")
-        if self.notion == "trace":
-            self.missing.append("the motions through the recordings, which are not judged here")
 
     def rests_on_inputs(self, error):
         """Notes that inputs were computed in doubles."""

@@ -1,7 +1,5 @@
 //! Nonlinear models: `conform`, `check`, `reach` and `report` on them.
 
-use std::collections::BTreeSet;
-
 use serde_json::{Value, json};
 
 use crate::fixture::{Lab, Run, SAMPLES, cell, robot_toml, sealed};
@@ -38,7 +36,7 @@ fn fits(schema: &jsonschema::Validator, model: &Value) {
 #[test]
 fn a_nonlinear_model_goes_through_every_command() {
     let lab = bent();
-    let run = conform(&lab, "--out model.json --report report --verbose --explain 0.001,0.01")
+    let run = conform(&lab, "--out model.json --report report --verbose")
         .exits(0)
         .notes("round 1: the linearised sets cost");
     for part in [
@@ -46,8 +44,6 @@ fn a_nonlinear_model_goes_through_every_command() {
          the computed outer set, an enclosure",
         "for the linearised sets",
         "decide X0 and U",
-        "a motion of the model itself (start in X0, input in U, held over each sample) was found \
-         within 0.001 rad and 0.01 rad/s.",
     ] {
         assert!(run.stdout.contains(part), "{part:?} is not in\n{}", run.stdout);
     }
@@ -58,7 +54,6 @@ fn a_nonlinear_model_goes_through_every_command() {
         (&json!("outer"), &json!("program"))
     );
     assert_eq!(model["acceleration"].as_array().unwrap().len(), 2);
-    assert_eq!(model["explained"]["residuals"].as_array().unwrap().len(), 6);
     let check = lab.check("--json").exits(0).json();
     assert_eq!((&check["rows"], &check["violations"]["count"]), (&408.into(), &0.into()));
     lab.run("reach --model model.json --data data --torque compensated --out reach").exits(0);
@@ -72,26 +67,9 @@ fn a_nonlinear_model_goes_through_every_command() {
         }
     }
     let page = lab.read("report/report.html");
-    for part in [
-        "computed outer set",
-        "outer enclosure",
-        "of the 6 recordings, a motion of the model itself",
-    ] {
+    for part in ["computed outer set", "outer enclosure"] {
         assert!(page.contains(part), "{part}");
     }
-}
-
-#[test]
-fn the_recordings_that_decide_are_explained_by_default() {
-    let lab = bent();
-    let run = conform(&lab, "--out model.json --verbose").exits(0);
-    assert!(run.stdout.contains("recordings that decide the sets, a motion"), "{}", run.stdout);
-    let model: Value = serde_json::from_str(&lab.read("model.json")).unwrap();
-    let files = |list: &Value, key: &str| -> BTreeSet<String> {
-        list.as_array().unwrap().iter().map(|of| of[key].as_str().unwrap().into()).collect()
-    };
-    let explained = files(&model["explained"]["residuals"], "file");
-    assert!(explained.len() < 6 && explained == files(&model["tight"], "run"), "{explained:?}");
 }
 
 #[test]
@@ -107,12 +85,10 @@ fn a_model_of_an_abstraction_is_that_of_its_robot() {
 #[test]
 fn bisection_is_a_baseline_that_costs_more() {
     let lab = bent();
-    let program = conform(&lab, "--json --explain none").exits(0).json();
-    let run =
-        conform(&lab, "--json --explain none --method bisection").exits(0).notes("radius 6 of 6");
+    let program = conform(&lab, "--json").exits(0).json();
+    let run = conform(&lab, "--json --method bisection").exits(0).notes("radius 6 of 6");
     let bisection = run.json();
     fits(&schema(), &bisection);
-    assert!(program.get("explained").is_none());
     let cost = |model: &Value| model["cost"].as_f64().unwrap();
     assert!(
         cost(&bisection) > 0.999 * cost(&program),
@@ -148,8 +124,6 @@ fn progress_of_another_job_is_refused_and_a_finished_one_leaves_none() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let lab = bent();
-    conform(&lab, "--explain 1").fails_with(&["--explain: \"1\"", "2 numbers"]);
-    conform(&lab, "--explain 1,-1").fails_with(&["tolerance 2 is -1"]);
     lab.run("abstract --robot bent.toml --order 3 --box 0.05,0.5,1 --out small.json").exits(0);
     lab.run("conform --abstraction small.json --data data --torque compensated").fails_with(&[
         "A_1.csv: q1 starts at 0.098",

@@ -72,7 +72,6 @@ impl Certificate {
             return Err(Error::NotPoints);
         }
         // The certificate is about the points, not the motions through them.
-        let notion = if notion.asks_motions() { Notion::Exact } else { notion };
         let (plant, points, sets) = (Linear::new(problem)?, points(problem)?, model.sets());
         let is_measurable = problem.settings().disturbance == Disturbance::Measurable;
         let head = Head {

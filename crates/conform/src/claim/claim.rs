@@ -2,7 +2,6 @@
 
 use crate::claim::look::Look;
 use crate::error::{Error, Result};
-use crate::progress::Progress;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
@@ -33,15 +32,6 @@ pub(crate) trait Claim: Sync {
     /// Returns the part by which sets may have to grow for a point before a search goes on; `None`
     /// where only the rows are claimed.
     fn tolerance(&self) -> Option<f64>;
-
-    /// Widens the sets that a search found, for what programs do not ask.
-    ///
-    /// # Errors
-    ///
-    /// Fails if the recordings cannot be reached, or the job is cancelled.
-    fn widen(&self, sets: UncertaintySets, _: &dyn Progress) -> Result<UncertaintySets> {
-        Ok(sets)
-    }
 }
 
 /// The rows alone: the notion hull.

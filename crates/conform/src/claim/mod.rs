@@ -13,7 +13,6 @@ pub(crate) mod remote;
 mod sample_points;
 mod sample_set;
 pub(crate) mod touching;
-mod traces;
 pub(crate) mod verdict;
 pub(crate) mod witness;
 

@@ -4,7 +4,6 @@ use crate::claim::claim::{Claim, Rows};
 use crate::claim::look::Look;
 use crate::claim::points::{Points, tolerance};
 use crate::claim::remote::{PointServer, Remote};
-use crate::claim::traces::Traces;
 use crate::data::notion::Notion;
 use crate::data::problem::Problem;
 use crate::data::settings::Settings;
@@ -43,9 +42,6 @@ pub(crate) fn claim<'a>(
     let settings = problem.settings();
     Ok(match (settings.notion, server) {
         (notion, _) if !notion.asks_points() => Box::new(Rows),
-        (notion, _) if notion.asks_motions() => {
-            Box::new(Traces { problem, points: Points::new(problem)? })
-        }
         (_, Some(server)) => {
             let root = &problem.recordings().root;
             Box::new(Remote { server, root, tolerance: tolerance(settings) })

@@ -8,7 +8,6 @@ use crate::data::problem::Problem;
 use crate::data::settings::{Settings, States};
 use crate::data::suite::Suite;
 use crate::error::Result;
-use crate::explain::trace::{TraceVerdict, trace_factors};
 use crate::tube::judged::Judged;
 use crate::tube::rows::Row;
 use crate::tube::strand::Lost;
@@ -36,9 +35,6 @@ pub struct Verdict {
     /// The recorded points, where the notion is not the hull.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<PointVerdict>,
-    /// The recordings as motions of the model, for the notion trace.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub traces: Option<TraceVerdict>,
     /// The largest excess of a row that has a reachable set, rad or rad/s: not above 0 when all
     /// rows hold.
     pub largest_excess: f64,
@@ -64,18 +60,14 @@ pub struct SuiteVerdict {
     /// How many of its points were not proved, where the notion is not the hull.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points_unproved: Option<usize>,
-    /// How many of its recordings were not proved to be motions of the model, for the notion trace.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub traces_unproved: Option<usize>,
     /// The recordings that leave the set furthest in some row.
     pub violating_runs: Vec<String>,
 }
 
 impl SuiteVerdict {
-    /// Returns whether a row, a point or a trace of the suite was not proved.
+    /// Returns whether a row or a point of the suite was not proved.
     pub(crate) fn fails(&self) -> bool {
-        let unproved = [self.points_unproved, self.traces_unproved];
-        self.violations.count > 0 || unproved.into_iter().flatten().any(|count| count > 0)
+        self.violations.count > 0 || self.points_unproved.is_some_and(|count| count > 0)
     }
 }
 
@@ -147,8 +139,6 @@ impl Verdict {
         }
         let count = |judged: &Judged| count_points(problem, tube, judged, &mut suites);
         let points = tube.judged.as_ref().map(count);
-        let asks_motions = problem.settings().notion.asks_motions();
-        let traces = asks_motions.then(|| judge_traces(problem, tube, &mut suites)).transpose()?;
         let rows = suites.iter().map(|suite| suite.rows).sum();
         let (runs, enclosure) = (problem.recordings().run_count(), tube.enclosure);
         Ok(Self {
@@ -159,7 +149,6 @@ impl Verdict {
             rows,
             violations,
             points,
-            traces,
             largest_excess: if largest_excess.is_finite() { largest_excess } else { 0.0 },
             lost: tube.lost(problem)?,
             suites,
@@ -176,16 +165,14 @@ impl SuiteVerdict {
             rows: 0,
             violations,
             points_unproved: None,
-            traces_unproved: None,
             violating_runs: Vec::new(),
         }
     }
 
-    /// Returns whether all rows of the suite, its points and its motions were proved.
+    /// Returns whether all rows and points of the suite were proved.
     #[must_use]
     pub fn holds(&self) -> bool {
-        let unproved = [self.points_unproved, self.traces_unproved];
-        self.violations.count == 0 && unproved.iter().flatten().all(|count| *count == 0)
+        !self.fails()
     }
 
     fn take(&mut self, problem: &Problem, row: &Row) {
@@ -219,24 +206,6 @@ fn count_points(
         }
     }
     PointVerdict::new(problem, tube, judged)
-}
-
-/// Judges the recordings as motions of the model and counts them for each suite.
-fn judge_traces(
-    problem: &Problem,
-    tube: &Tube,
-    suites: &mut [SuiteVerdict],
-) -> Result<TraceVerdict> {
-    let factors = trace_factors(problem, &tube.sets)?;
-    suites.iter_mut().for_each(|suite| suite.traces_unproved = Some(0));
-    for trace in factors.iter().filter(|trace| !trace.holds()) {
-        let (suite, run) = (&mut suites[trace.suite], &problem.entry(trace.run).file);
-        suite.traces_unproved = suite.traces_unproved.map(|count| count + 1);
-        if !suite.violating_runs.contains(run) {
-            suite.violating_runs.push(run.clone());
-        }
-    }
-    Ok(TraceVerdict::new(problem, &factors))
 }
 
 fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {

@@ -14,9 +14,6 @@ pub enum Notion {
     PhasePlane,
     /// All states together: in the set itself.
     Exact,
-    /// All states together, and one motion of the model passes through all samples of a recording,
-    /// up to the noise set V.
-    Trace,
 }
 
 impl Notion {
@@ -25,7 +22,6 @@ impl Notion {
         ("hull", "each state by itself"),
         ("phase-plane", "position and velocity of each joint together"),
         ("exact", "all states together"),
-        ("trace", "one motion through all samples, up to the noise V"),
     ];
 
     /// Returns whether recorded points are judged, and not only each state by itself.
@@ -34,17 +30,11 @@ impl Notion {
         self != Self::Hull
     }
 
-    /// Returns whether one motion of the model must pass through all samples of a recording.
-    #[must_use]
-    pub(crate) fn asks_motions(self) -> bool {
-        self == Self::Trace
-    }
-
     /// Returns the states of each projection in which recorded points must lie in the reachable
     /// set, for recordings of `rows` states: positions, or also velocities.
     pub(crate) fn projections(self, rows: usize, joints: usize) -> Vec<Vec<usize>> {
         match self {
-            Self::Exact | Self::Trace => vec![(0..rows).collect()],
+            Self::Exact => vec![(0..rows).collect()],
             _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
             _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
         }
@@ -64,11 +54,6 @@ impl Notion {
             Self::Exact => {
                 format!("the recorded {states} of all joints together lie in the model's {set}")
             }
-            Self::Trace => format!(
-                "{}, and one motion of the model, with its start in X0 and its input in U, passes \
-                 through all samples within V",
-                Self::Exact.claim_words(states, set)
-            ),
         }
     }
 
@@ -87,10 +72,6 @@ impl Notion {
             Self::Exact => {
                 "The notion is exact: all states at one sample are reachable together. One motion \
                  of the model need not pass through the states of all samples."
-            }
-            Self::Trace => {
-                "The notion is trace: up to V, one motion of the model passes through the states \
-                 of all samples. V is the error that the recordings were allowed."
             }
         }
     }

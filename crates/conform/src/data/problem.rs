@@ -102,7 +102,6 @@ impl Problem {
     ) -> Result<Self> {
         let Setup { robot, settings, .. } = &setup;
         settings.validate(robot.joint_count())?;
-        settings.check_trace()?;
         let kept = KeptRuns::default();
         let reader = SuiteReader {
             source: source.as_ref(),
@@ -112,9 +111,7 @@ impl Problem {
             nominal: settings.nominal,
             nominal_starts: &setup.nominal_starts,
             kept: &kept,
-            keep_all: keep == Keep::All
-                || (settings.explain.is_some() && setup.explains_all)
-                || settings.notion.asks_points(),
+            keep_all: keep == Keep::All || settings.notion.asks_points(),
         };
         let recordings = Recordings::read(&reader, names, progress)?;
         check_starts(&setup, source.as_ref(), &recordings)?;

@@ -12,11 +12,6 @@ use serde::{Deserialize, Serialize};
 use crate::data::notion::Notion;
 use crate::error::{Error, Result};
 
-/// What the notion trace asks of the settings.
-pub(crate) const NEEDS_NOISE: &str = "needs a measurement noise V in every state, because no \
-                                      motion of a model meets measured states exactly; give \
-                                      `conform` the radii of V";
-
 /// How the smallest sets are found (docs/method.md, correction K).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -78,8 +73,8 @@ impl States {
             (Notion::Hull, Self::All) => "each state by itself",
             (Notion::Hull | Notion::PhasePlane, Self::Positions) => "each position by itself",
             (Notion::PhasePlane, Self::All) => "position and velocity of each joint together",
-            (Notion::Exact | Notion::Trace, Self::All) => "all states together",
-            (Notion::Exact | Notion::Trace, Self::Positions) => "all positions together",
+            (Notion::Exact, Self::All) => "all states together",
+            (Notion::Exact, Self::Positions) => "all positions together",
         }
     }
 }
@@ -153,25 +148,6 @@ pub enum Weights {
     Given(Vec<f64>),
 }
 
-/// The largest difference within which a motion of the model counts as an explanation of a
-/// recording.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tolerance {
-    /// rad.
-    pub position: f64,
-    /// rad/s.
-    pub velocity: f64,
-}
-
-impl Default for Tolerance {
-    /// Returns 0.001 rad and 0.01 rad/s, a little more than the noise of the paper's recordings
-    /// (0.0002 rad and 0.009 rad/s at most).
-    fn default() -> Self {
-        Self { position: 1e-3, velocity: 1e-2 }
-    }
-}
-
 /// Everything that decides a conformance result besides robot and recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -223,9 +199,6 @@ pub struct Settings {
     /// looked at but by [`conform`](crate::conform).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub calibrate: Vec<String>,
-    /// What counts as an explanation of a run; none is searched for where it is `None`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub explain: Option<Tolerance>,
     /// Samples later than this many seconds after the first are not used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
@@ -255,7 +228,6 @@ impl Settings {
             nominal: NominalStart::default(),
             equations: Equations::default(),
             calibrate: Vec::new(),
-            explain: None,
             until: None,
             gap_limit: GapLimit::default(),
         }
@@ -264,20 +236,6 @@ impl Settings {
     /// Returns whether the noise of the sensors limits V or X0.
     pub(crate) fn are_limited_by_noise(&self) -> bool {
         self.noise == Noise::Fitted || self.nominal == NominalStart::Own
-    }
-
-    /// Checks that traces can be asked for, where they are.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Trace`] with the remedy.
-    pub(crate) fn check_trace(&self) -> Result<()> {
-        match &self.noise {
-            _ if !self.notion.asks_motions() => Ok(()),
-            Noise::None => Err(Error::Trace(NEEDS_NOISE)),
-            Noise::Fixed(radii) if radii.contains(&0.0) => Err(Error::Trace(NEEDS_NOISE)),
-            Noise::Fixed(_) | Noise::Fitted => Ok(()),
-        }
     }
 
     /// Checks that U can cover stiction, where it is to.
@@ -330,11 +288,6 @@ impl Settings {
         }
         if let Some(radii) = &self.sensor_noise {
             check_list("sensor noise radius", radii, (2 * joints, STATES), 0.0..=1e9)?;
-        }
-        if let Some(Tolerance { position, velocity }) = self.explain {
-            for (index, value) in [position, velocity].into_iter().enumerate() {
-                check_range("tolerance", Some(index + 1), value, &(0.0..=f64::MAX))?;
-            }
         }
         self.until.map_or(Ok(()), |until| check_range("until", None, until, &(0.0..=f64::MAX)))
     }

@@ -8,7 +8,7 @@ use crate::data::condition::Condition;
 use crate::data::correction::InputCorrection;
 use crate::data::dynamics::Dynamics;
 use crate::data::notion::Notion;
-use crate::data::settings::{Equations, Settings, Tolerance};
+use crate::data::settings::{Equations, Settings};
 use crate::error::{Error, Result};
 
 /// What decides a conformance besides the recordings: the robot, its model and the settings.
@@ -23,9 +23,6 @@ pub struct Setup {
     pub(crate) dynamics: Dynamics,
     /// The settings.
     pub(crate) settings: Settings,
-    /// Whether every run is explained, where the settings ask for explanations, and not only the
-    /// runs that decide the sets.
-    pub(crate) explains_all: bool,
     /// The nominal initial states of suites by their name, 2n each, where they are known. Any
     /// other suite starts at the mean of the recordings at hand.
     pub(crate) nominal_starts: BTreeMap<String, Vec<f64>>,
@@ -73,8 +70,8 @@ impl Setup {
             return Err(Error::Equations);
         }
         let nominal_starts = BTreeMap::new();
-        let (explains_all, correction, condition) = (true, None, None);
-        Ok(Self { robot, dynamics, settings, explains_all, nominal_starts, correction, condition })
+        let (correction, condition) = (None, None);
+        Ok(Self { robot, dynamics, settings, nominal_starts, correction, condition })
     }
 
     /// Returns the robot.
@@ -108,19 +105,6 @@ impl Setup {
         self.settings.notion = notion.unwrap_or(own_notion);
         self.settings.until = until.or(own_until);
         self.settings.gap_limit = gap_limit;
-        self
-    }
-
-    /// Sets the tolerance of explanations, for all runs; `None` asks for none.
-    #[must_use]
-    pub fn explain(mut self, tolerance: Option<Tolerance>) -> Self {
-        (self.settings.explain, self.explains_all) = (tolerance, true);
-        self
-    }
-
-    /// Asks for explanations of the runs that decide the sets, within the default tolerance.
-    pub(crate) fn explain_deciding(mut self) -> Self {
-        (self.settings.explain, self.explains_all) = (Some(Tolerance::default()), false);
         self
     }
 

@@ -333,10 +333,10 @@ impl<'a> Parameters<'a> {
             keep_weight(robot, &mut description);
         }
         let robot = Robot::from_description(&description)?;
-        let (explains_all, correction) = (self.setup.explains_all, Some(correction));
+        let correction = Some(correction);
         let (dynamics, condition) = (Dynamics::new(&robot, settings)?, None);
         let (settings, nominal_starts) = (settings.clone(), nominal_starts.clone());
-        Ok(Setup { robot, dynamics, settings, explains_all, nominal_starts, correction, condition })
+        Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition })
     }
 
     /// The quadratic and cubic viscous friction that is missing at the order of the model, about

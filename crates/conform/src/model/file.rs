@@ -24,7 +24,7 @@ use crate::data::settings::Settings;
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::record::FitRecord;
-use crate::model::records::{DataRecord, Explained};
+use crate::model::records::DataRecord;
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::Calibration;
 use crate::next_motion::deciding_runs::DecidingRuns;
@@ -89,9 +89,6 @@ pub struct Model {
     /// How the sets of a model that is not linear were found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<SearchSummary>,
-    /// Which recordings a motion of the model itself reproduces, where the settings ask for it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) explained: Option<Explained>,
     /// X0 around the nominal initial state, 2n, rad and rad/s.
     pub initial_set: Hyperrectangle,
     /// U around the nominal input, n, N m.
@@ -201,7 +198,6 @@ impl Model {
         };
         let matrix =
             |of: fn(&LinearSystem) -> &DMatrix<f64>| linear.map_or_else(Vec::new, |s| rows(of(s)));
-        let explained = |tolerance| Explained::new(problem, tolerance, &found.explanations);
         Self {
             format: FORMAT.into(),
             version: VERSION,
@@ -214,7 +210,6 @@ impl Model {
             cost_paper: found.paper_cost,
             hull_volume: finite(found.hull_volume),
             search: found.search.clone(),
-            explained: settings.explain.filter(|_| !found.explanations.is_empty()).map(explained),
             initial_set,
             input_set,
             noise_set,

@@ -7,33 +7,9 @@ use sha2::{Digest, Sha256};
 
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
-use crate::data::settings::{NominalStart, Tolerance};
+use crate::data::settings::NominalStart;
 use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
-use crate::explain::explanation::Explanation;
-
-/// The recordings beside the closest motions of the model that were found: a start in X0 and an
-/// input in U, held over each sample.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Explained {
-    /// Number of recordings that are reproduced within the tolerance of the settings.
-    pub runs: usize,
-    /// The residuals of each recording.
-    pub residuals: Vec<Residual>,
-}
-
-/// The largest difference of a recording to the closest motion found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Residual {
-    /// Path in the data set.
-    pub file: String,
-    /// The largest difference of a position, rad; `None` where the motion ran away.
-    pub position: Option<f64>,
-    /// The largest difference of a velocity, rad/s; `None` where the motion ran away.
-    pub velocity: Option<f64>,
-}
 
 /// The recordings that a model encloses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -92,33 +68,6 @@ pub struct RunRecord {
     pub samples: usize,
     /// Time from the first to the last of them, s.
     pub duration: f64,
-}
-
-impl Explained {
-    pub(super) fn new(problem: &Problem, tolerance: Tolerance, all: &[Explanation]) -> Self {
-        let is_within =
-            |e: &&Explanation| e.position <= tolerance.position && e.velocity <= tolerance.velocity;
-        let finite = |value: f64| value.is_finite().then_some(value);
-        let residual = |e: &Explanation| Residual {
-            file: problem.entry(e.run).file.clone(),
-            position: finite(e.position),
-            velocity: finite(e.velocity),
-        };
-        Self {
-            runs: all.iter().filter(is_within).count(),
-            residuals: all.iter().map(residual).collect(),
-        }
-    }
-}
-
-impl Residual {
-    /// Returns the larger difference in parts of the tolerance.
-    pub(crate) fn in_tolerances(&self, tolerance: Tolerance) -> f64 {
-        let part = |value: Option<f64>, of: f64| {
-            value.unwrap_or(f64::INFINITY) / of.max(f64::MIN_POSITIVE)
-        };
-        part(self.position, tolerance.position).max(part(self.velocity, tolerance.velocity))
-    }
 }
 
 impl SuiteRecord {

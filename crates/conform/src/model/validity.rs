@@ -92,7 +92,6 @@ impl Model {
             robot,
             dynamics,
             settings: self.settings.clone(),
-            explains_all: true,
             nominal_starts,
             correction: self.correction.clone(),
             condition: None,

@@ -34,7 +34,7 @@ const DRIFT_WEIGHT: f64 = 1.0 / 16.0;
 /// each window that is open: some disturbance reaches it in that state. For a value that is
 /// reported as [proved](Leave::proved), no start in X0, no disturbance with values in U of the
 /// model's kind and no noise in V explain the window up to that sample, under the inputs and times
-/// as they are in double precision. That also disproves the notions phase-plane, exact and trace,
+/// as they are in double precision. That also disproves the notions phase-plane and exact,
 /// whose sets lie in the hull. Values at times between samples are interpolated and carry what
 /// that changes.
 ///

@@ -145,7 +145,7 @@ pub(crate) fn without_held_out(problem: &Problem) -> Result<Option<Problem>> {
 fn held_out<'a>(problem: &'a Problem, motions: &Motions<'a>) -> Result<BTreeSet<&'a str>> {
     let notion = problem.settings().notion;
     let is_linear = problem.dynamics().linear_system().is_some();
-    if notion.asks_motions() || notion.asks_points() && !is_linear {
+    if notion.asks_points() && !is_linear {
         let problem = "sets are calibrated for the notions hull, phase-plane and exact of a linear \
                        model, and for hull of any other; use the notion hull";
         return Err(Error::Calibration(Advice::from(problem).with("notion", "hull")));

@@ -54,7 +54,7 @@ pub(crate) fn point_gauge(
 }
 
 /// Finds the sets of the other motions of a linear model by the notion of the problem, and compares
-/// the points of `motion` with them. The notion trace counts as exact.
+/// the points of `motion` with them.
 ///
 /// # Errors
 ///

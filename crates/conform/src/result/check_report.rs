@@ -17,8 +17,7 @@ impl Check {
             let is_of = |finding: &&Finding| codes.contains(&finding.code);
             self.findings.iter().filter(is_of).cloned().collect()
         };
-        let verdict =
-            [Code::Conformant, Code::NotConformant, Code::Vacuous, Code::Points, Code::Traces];
+        let verdict = [Code::Conformant, Code::NotConformant, Code::Vacuous, Code::Points];
         let mut first = Section { findings: of(&verdict), ..Section::default() };
         let furthest = self.findings.iter().filter(|finding| {
             finding.code == Code::FurthestOutside && !finding.numbers.contains_key("joint")

@@ -96,10 +96,6 @@ impl Check {
         lines.extend(Finding::vacuous_in_brief(model));
         let points = Finding::points(&self.verdict, model.settings.states);
         lines.extend(points.map(|points| points.text));
-        let traces = self.verdict.traces.as_ref();
-        lines.extend(
-            traces.map(|traces| Finding::traces(traces, *runs, model.settings.disturbance).text),
-        );
         lines.extend(Finding::lost_in_brief(lost));
         lines
     }

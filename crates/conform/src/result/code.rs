@@ -46,8 +46,6 @@ codes! {
     Vacuous = "vacuous",
     /// How many recorded points were proved to lie in the reachable set.
     Points = "points",
-    /// How many recordings were proved to be motions of the model.
-    Traces = "traces",
     /// A reachable set could not be computed to the end.
     SetLost = "set-lost",
     /// A simulated motion of the model diverged.
@@ -106,8 +104,6 @@ codes! {
     Stiction = "stiction",
     /// How many recorded values touch the reachable set.
     Touching = "touching",
-    /// How close motions of the model come to the recordings.
-    Explanations = "explanations",
     /// How held-out motions scaled the sets.
     Calibrated = "calibrated",
     /// A bound of the probability that the next motion leaves the sets.

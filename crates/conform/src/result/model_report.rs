@@ -49,7 +49,7 @@ impl Model {
         if let Some(any) = &self.any_run {
             sections.push(Section { findings: vec![Finding::any_run(any)], ..Section::default() });
         }
-        sections.extend([touching(self), explanations(self), new_motions(self)]);
+        sections.extend([touching(self), new_motions(self)]);
         sections.extend(dependence(self));
         sections.retain(|section| !section.is_empty());
         Report { sections }
@@ -62,16 +62,12 @@ fn verdict(model: &Model) -> Section {
     let mut findings = vec![Finding::verdict_of_fit(model)];
     findings.extend(Finding::vacuous(model));
     findings.extend(Finding::points(proof, model.settings.states));
-    if let Some(traces) = &proof.traces {
-        let runs = model.data.run_count();
-        findings.push(Finding::traces(traces, runs, model.settings.disturbance));
-    }
     findings.extend(proof.lost.iter().map(Finding::from));
     let runs_away = model.search.as_ref().and_then(|search| search.runs_away.as_ref());
     findings.extend(runs_away.map(|(case, time)| Finding::unstable(case, *time)));
     findings.push(Finding::cost(model));
     let gap = model.gap_of_not_minimal();
-    findings.extend(gap.map(|gap| Finding::not_smallest(model.settings.notion, gap)));
+    findings.extend(gap.map(Finding::not_smallest));
     Section { findings, ..Section::default() }
 }
 
@@ -168,16 +164,6 @@ fn touching(model: &Model) -> Section {
     let table = Table::new(["run", "time", "state", "side", margin], rows).cut_to(MOST_PLACES);
     let tables = if model.tight.is_empty() { Vec::new() } else { vec![table] };
     Section { findings: vec![Finding::touching(model)], tables, ..Section::default() }
-}
-
-fn explanations(model: &Model) -> Section {
-    let searched = model.explained.as_ref().zip(model.settings.explain);
-    let finding = searched.map(|(explained, tolerance)| {
-        let are_some = explained.residuals.len() < model.data.run_count();
-        let some = if are_some { " that decide the sets" } else { "" };
-        Finding::explanations(explained, some, tolerance, &model.robot.kinds())
-    });
-    Section { findings: finding.into_iter().collect(), ..Section::default() }
 }
 
 /// Returns how the sets were calibrated, and the strongest statement about the next motion.

@@ -115,10 +115,6 @@ pub(super) fn against(model: &Model) -> Vec<String> {
     let proof = &model.proof;
     let mut lines: Vec<String> = Finding::vacuous_in_brief(model).into_iter().collect();
     lines.extend(Finding::points(proof, model.settings.states).map(|points| points.text));
-    let traces = proof.traces.as_ref();
-    lines.extend(traces.map(|traces| {
-        Finding::traces(traces, model.data.run_count(), model.settings.disturbance).text
-    }));
     lines.extend(Finding::lost_in_brief(&proof.lost));
     lines
 }

@@ -96,8 +96,7 @@ pub(super) fn bisect(
             state.reachable_sets
         ));
     }
-    let sets = claim.widen(state.sets, progress)?;
-    let tube = claim.judge(&plant, &sets, &Look::proof())?;
+    let tube = claim.judge(&plant, &state.sets, &Look::proof())?;
     let Costs { cost, of_samples, volume, .. } = plant.costs(&tube)?;
     let reachable_sets = state.reachable_sets + 1;
     let search = SearchSummary { rounds: 1, reachable_sets, ..SearchSummary::default() };

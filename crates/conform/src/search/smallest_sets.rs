@@ -37,7 +37,7 @@ pub(crate) fn smallest_sets(
         Method::Bisection if !plant.is_exact() => bisect(problem, claim, &journal, progress)?,
         _ => {
             let ended = search((problem, plant), claim, &journal, progress)?;
-            let (found, program, rows) = finish((problem, plant), claim, ended, progress)?;
+            let (found, program, rows) = finish((problem, plant), claim, ended)?;
             let left_out = match left_out {
                 Some(known) => known,
                 None => leave_each_out(problem, &program, &found.tube.sets, rows, progress)?,
@@ -57,22 +57,20 @@ pub(crate) fn smallest_sets(
 pub(crate) fn smallest_sets_alone(problem: &Problem, claim: &dyn Claim) -> Result<Found> {
     let plant = &*plant(problem)?;
     let ended = search((problem, plant), claim, &Journal::new(None, problem), &Silent)?;
-    Ok(finish((problem, plant), claim, ended, &Silent)?.0)
+    Ok(finish((problem, plant), claim, ended)?.0)
 }
 
-/// Widens the sets that a search found for what programs do not ask, and proves them. Returns the
-/// last program and its rows too.
+/// Proves the sets that a search found. Returns the last program and its rows too.
 fn finish<'a>(
     (problem, plant): (&Problem, &dyn Plant),
     claim: &dyn Claim,
     ended: Ended<'a>,
-    progress: &dyn Progress,
 ) -> Result<(Found, Program<'a>, Vec<RowIndex>)> {
     let Ended { state, round, lower_bound, tube } = ended;
     let (program, is_exact) = (round.program, plant.is_exact());
     let sets = match claim.tolerance() {
         None if is_exact => program.repaired(&state.sets),
-        _ => claim.widen(state.sets.clone(), progress)?,
+        _ => state.sets.clone(),
     };
     let tube = match tube {
         Some(tube) if tube.sets == sets => tube,

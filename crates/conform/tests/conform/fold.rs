@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use reachtube_abstraction::{Abstraction, ModelKind, OperatingBox};
 use reachtube_conform::fleet::{Fold, OnDefect};
 use reachtube_conform::result::FrontEnd;
-use reachtube_conform::settings::{NominalStart, Tolerance};
+use reachtube_conform::settings::NominalStart;
 use reachtube_conform::{
     Error, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
@@ -253,8 +253,6 @@ fn recordings_are_checked_by_fold_as_by_reading() {
     let problem = Problem::of_fold(setup_of_fit, fold, OnDefect::Refuse).unwrap();
     std::fs::write(&path, model_of(&problem)).unwrap();
     let (model, setup) = Model::open(&path).unwrap();
-    // What a model was asked for besides its sets is no matter.
-    let setup = setup.explain(Some(Tolerance::default()));
     let checked = |problem: &Problem| {
         let tube = Tube::new(problem, model.sets()).unwrap();
         check(&model, problem, &tube).unwrap()
@@ -356,8 +354,6 @@ fn what_a_fold_cannot_do_is_refused_by_name() {
         Err(error @ Error::Fold(_)) => error.written_for(FrontEnd::CommandLine),
         other => panic!("{other:?}"),
     };
-    let explain = setup(&robot, |settings| settings.explain = Some(Tolerance::default()));
-    assert!(refusal(Fold::new(&explain)).contains("(--explain none)"));
     let setup_of = setup(&robot, |_| {});
     let fold = fold_of(&setup_of, &runs);
     // The same recording twice, another setup, damage.

@@ -21,5 +21,4 @@ mod sampled_states;
 mod schunk;
 mod stiction;
 mod synthetic;
-mod traces;
 mod warmth;

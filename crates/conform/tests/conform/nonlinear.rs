@@ -232,7 +232,7 @@ fn stronger_notions_cost_more_and_are_proved_for_each_model() {
             let expected = match notion {
                 Notion::Hull => None,
                 Notion::PhasePlane => Some(2 * all),
-                Notion::Exact | Notion::Trace => Some(all),
+                Notion::Exact => Some(all),
             };
             assert_eq!(points, expected);
             let mut model = Model::new(&problem, &found);

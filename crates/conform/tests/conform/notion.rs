@@ -60,7 +60,7 @@ fn stronger_notions_cost_more_and_are_proved() {
                     let expected = match notion {
                         Notion::Hull => None,
                         Notion::PhasePlane => Some(2 * points),
-                        Notion::Exact | Notion::Trace => Some(points),
+                        Notion::Exact => Some(points),
                     };
                     assert_eq!(verdict.points.as_ref().map(|points| points.points), expected);
                     assert!(found.optimality_gap.unwrap() < 1e-4, "{:?}", found.optimality_gap);

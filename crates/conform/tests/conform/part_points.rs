@@ -222,7 +222,6 @@ fn notions_that_need_whole_recordings_are_refused_by_name() {
         Err(Error::Fold(why)) => assert!(why.problem.contains("use the notion hull"), "{why}"),
         other => panic!("{other:?}"),
     };
-    refused(&setup(Notion::Trace, Noise::Fixed(vec![1e-3; 4])));
     let abstraction = Abstraction { model: ModelKind::Two, order: 3 };
     let exact =
         Settings { notion: Notion::Exact, abstraction, ..Settings::new(Torque::Compensated, 2) };

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::common::{Disturbed, Random, grid, two_joints};
-use reachtube_conform::settings::{NominalStart, Tolerance};
+use reachtube_conform::settings::NominalStart;
 use reachtube_conform::{Check, Keep, Model, Problem, Settings, Setup, Silent, conform, reach};
 use reachtube_recordings::{Defect, MemoryRuns, ReadOptions, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
@@ -61,25 +61,21 @@ fn each_recording_is_read_once() {
     let robot = two_joints();
     for differ in [false, true] {
         for nominal in [NominalStart::Mean, NominalStart::Own] {
-            for explain in [None, Some(Tolerance::default())] {
-                let reads: Arc<Vec<AtomicUsize>> = Arc::new((0..12).map(|_| 0.into()).collect());
-                let source = Counting { runs: recorded(&robot, differ), reads: Arc::clone(&reads) };
-                let settings =
-                    Settings { nominal, explain, ..Settings::new(Torque::Compensated, 2) };
-                let setup = Setup::new(robot.clone(), settings).unwrap();
-                let problem =
-                    Problem::read(setup, Box::new(source), &[], Keep::All, &Silent).unwrap();
-                // Everything that a conformance with a page needs.
-                let found = conform(&problem, &Silent, None).unwrap();
-                let model = Model::new(&problem, &found);
-                let check = Check::new(&model, &problem, found.verdict.clone());
-                let sets = reach(&problem, &found.tube).unwrap();
-                let traces = (0..12).map(|index| problem.run(index).unwrap().len());
-                assert!(check.verdict.conformant && !sets.is_empty() && traces.sum::<usize>() > 0);
-                let counts: Vec<usize> =
-                    reads.iter().map(|count| count.load(Ordering::Relaxed)).collect();
-                assert_eq!(counts, [1; 12], "{differ} {nominal:?} {explain:?}");
-            }
+            let reads: Arc<Vec<AtomicUsize>> = Arc::new((0..12).map(|_| 0.into()).collect());
+            let source = Counting { runs: recorded(&robot, differ), reads: Arc::clone(&reads) };
+            let settings = Settings { nominal, ..Settings::new(Torque::Compensated, 2) };
+            let setup = Setup::new(robot.clone(), settings).unwrap();
+            let problem = Problem::read(setup, Box::new(source), &[], Keep::All, &Silent).unwrap();
+            // Everything that a conformance with a page needs.
+            let found = conform(&problem, &Silent, None).unwrap();
+            let model = Model::new(&problem, &found);
+            let check = Check::new(&model, &problem, found.verdict.clone());
+            let sets = reach(&problem, &found.tube).unwrap();
+            let traces = (0..12).map(|index| problem.run(index).unwrap().len());
+            assert!(check.verdict.conformant && !sets.is_empty() && traces.sum::<usize>() > 0);
+            let counts: Vec<usize> =
+                reads.iter().map(|count| count.load(Ordering::Relaxed)).collect();
+            assert_eq!(counts, [1; 12], "{differ} {nominal:?}");
         }
     }
 }

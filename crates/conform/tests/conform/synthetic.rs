@@ -10,9 +10,7 @@ use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome};
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::settings::{Centre, NominalStart, Weights};
-use reachtube_conform::{
-    Conformance, Model, Noise, Problem, Settings, UncertaintySets, explain, reach,
-};
+use reachtube_conform::{Conformance, Model, Noise, Problem, Settings, UncertaintySets, reach};
 use reachtube_reach::{
     Disturbance, Hyperrectangle, IntervalMatrix, LinearSystem, Propagation, TimeGrid,
 };
@@ -61,43 +59,6 @@ fn sets_cost_no_more_than_the_disturbances_that_were_there() {
     };
     assert!(found.cost <= truth(0.02, 0.5), "{} > {}", found.cost, truth(0.02, 0.5));
     assert!(found.cost > 0.2 * truth(0.01, 0.5));
-}
-
-#[test]
-fn each_run_is_explained_by_sets_that_hold_its_disturbances() {
-    let folder = tempfile::tempdir().unwrap();
-    let (robot, settings) = (two_joints(), Settings::new(Torque::Compensated, 2));
-    write_data_set(
-        folder.path(),
-        &[
-            ("a", suite(&robot, &grid(0.01, 80), 12, 3)),
-            ("b", suite(&robot, &grid(0.01, 50), 9, 4)),
-        ],
-    );
-    let problem = read(&robot, folder.path(), &["b", "a"], &settings);
-    let explained = |start: f64, input: f64| {
-        let set = |dimension, radius| Hyperrectangle {
-            centre: vec![0.0; dimension],
-            radius: vec![radius; dimension],
-        };
-        let sets = UncertaintySets {
-            initial_set: set(4, start),
-            input_set: set(2, input),
-            noise_set: None,
-        };
-        explain(&problem, &sets).unwrap()
-    };
-    // The starts lie within 0.01 of 0, and so within 0.02 of their mean.
-    let found = explained(0.02, 0.5);
-    let expected: Vec<usize> = problem
-        .recordings()
-        .suites
-        .iter()
-        .flat_map(|suite| suite.runs.iter().map(|run| run.index))
-        .collect();
-    assert_eq!(found.iter().map(|explanation| explanation.run).collect::<Vec<_>>(), expected);
-    assert!(found.iter().all(|run| run.position < 1e-7 && run.velocity < 1e-6), "{found:?}");
-    assert!(explained(0.02, 0.1).iter().all(|run| run.position > 1e-4 || run.velocity > 1e-3));
 }
 
 #[test]

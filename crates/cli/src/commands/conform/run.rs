@@ -110,15 +110,12 @@ fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
             (job, Some(cut.preparation))
         }
     };
-    let mut job = job
+    let job = job
         .suites(&args.data.suites)
         .fit((!args.fit.is_empty()).then_some(fit))
         .certified(args.certificate.is_some())
         .keep_runs(args.report.is_some())
         .resume(args.resume.clone());
-    if let Some(tolerance) = args.sets.explain()? {
-        job = job.explain(tolerance);
-    }
     Ok((job, preparation))
 }
 

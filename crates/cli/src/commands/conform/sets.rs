@@ -2,7 +2,7 @@
 
 use clap::Args;
 use reachtube::conform::settings::{
-    Centre, Equations, InitialLimit, Method, NominalStart, States, Tolerance, Weights,
+    Centre, Equations, InitialLimit, Method, NominalStart, States, Weights,
 };
 use reachtube::conform::{Noise, Notion, Settings};
 use reachtube_reach::Disturbance;
@@ -115,10 +115,6 @@ pub(crate) struct SetArguments {
         value_parser = choice::<Method>(METHODS)
     )]
     pub method: Method,
-    /// Search for a motion of the model near each recording, within these tolerances in rad and
-    /// rad/s [default: 0.001,0.01 for the recordings that decide the sets of a nonlinear model]
-    #[arg(long, hide_short_help = true, help_heading = "Method", value_name = "none|Q,QD")]
-    pub explain: Option<String>,
 }
 
 const CENTRES: Choices = &[
@@ -140,20 +136,6 @@ const METHODS: Choices =
     &[("program", "linear programs"), ("bisection", "one radius after the other, as in the paper")];
 
 impl SetArguments {
-    /// Returns the tolerance of `--explain`, where it is given.
-    pub(super) fn explain(&self) -> Result<Option<Option<Tolerance>>> {
-        Ok(match self.explain.as_deref() {
-            Some("none") => Some(None),
-            Some(list) => {
-                let wrong = || Error::ExplainTolerance { given: list.into() };
-                let (position, velocity) = list.split_once(',').ok_or_else(wrong)?;
-                let parse = |text: &str| text.trim().parse().map_err(|_| wrong());
-                Some(Some(Tolerance { position: parse(position)?, velocity: parse(velocity)? }))
-            }
-            None => None,
-        })
-    }
-
     /// Returns the usual settings of a robot of `joints` joints with these options.
     pub(super) fn settings(&self, usual: Settings, joints: usize) -> Result<Settings> {
         Ok(Settings {

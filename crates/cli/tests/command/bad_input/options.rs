@@ -63,11 +63,6 @@ pub(super) const CASES: &[Case] = &[
         conform!("--expansion 1,2,3"),
         &["3 values", "the robot has 2 joints"],
     ),
-    case(
-        "a tolerance that is no pair",
-        conform!("--explain 1"),
-        &["--explain: \"1\" is neither none nor 2 numbers"],
-    ),
     case("a fit of an unknown group", conform!("--fit inertai"), &["exists: 'inertia'"]),
     case(
         "a pull above 1",

@@ -35,10 +35,9 @@ impl Context {
         settings.validate(robot.joint_count())?;
         let is_linear = setup.dynamics.linear_system().is_some();
         let Settings { notion, .. } = settings;
-        if notion.asks_motions() || notion.asks_points() && !is_linear {
-            let problem = "the notion trace, and for models that are not linear every notion but \
-                           the hull, need whole recordings: use the notion hull, or read the \
-                           recordings on one machine";
+        if notion.asks_points() && !is_linear {
+            let problem = "every notion but the hull needs whole recordings of a model that is \
+                           not linear: use the notion hull, or read the recordings on one machine";
             return Err(Error::Fold(Advice::from(problem).with("notion", "hull")));
         }
         let is_own = settings.nominal == NominalStart::Own
@@ -55,20 +54,6 @@ impl Context {
         let digest = Sha256::digest(text).into();
         let (robot, torque) = (robot.clone(), settings.torque);
         Ok(Self { robot, torque, options, is_own, start_box, digest })
-    }
-
-    /// Refuses settings that ask for explanations.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Fold`].
-    pub(super) fn refuse_explanations(settings: &Settings) -> Result<()> {
-        let refused = || {
-            let problem = "an explanation needs every recording sample by sample; ask for none, or \
-                           read the recordings on one machine";
-            Error::Fold(Advice::from(problem).with("explain", "none"))
-        };
-        if settings.explain.is_some() { Err(refused()) } else { Ok(()) }
     }
 
     /// Returns the input along a run.

@@ -99,11 +99,6 @@ impl Fold {
     ///
     /// As [`new`](Self::new).
     pub fn with_most_bytes(setup: &Setup, most_bytes: usize) -> Result<Self> {
-        Context::refuse_explanations(&setup.settings)?;
-        Self::with_context(setup, most_bytes)
-    }
-
-    fn with_context(setup: &Setup, most_bytes: usize) -> Result<Self> {
         let (tree, suites, defects) = Default::default();
         let state = FoldState { most_bytes, runs: 0, tree, suites, defects, compared: None };
         Ok(Self { context: Arc::new(Context::new(setup)?), state, fitted: None })
@@ -120,7 +115,7 @@ impl Fold {
         digest: String,
         fitted: HashSet<String>,
     ) -> Result<Self> {
-        let mut fold = Self::with_context(setup, MOST_BYTES)?;
+        let mut fold = Self::with_most_bytes(setup, MOST_BYTES)?;
         fold.fitted = Some(Arc::new(fitted));
         fold.state.compared = Some((digest, 0));
         Ok(fold)

@@ -28,7 +28,7 @@ impl Problem {
     /// Makes the problem of the recordings that were folded, which equals the problem of
     /// [`read`](Self::read) over the same recordings: the same sets, verdicts and model files to
     /// the last bit. What needs single recordings again ends with [`Error::Fold`]: figures,
-    /// explanations, the notion trace, and `fit` where runs differ. The notions phase-plane and
+    /// and `fit` where runs differ. The notions phase-plane and
     /// exact ask the points ([`conform_elsewhere`](crate::fleet::conform_elsewhere)).
     ///
     /// # Errors
@@ -40,9 +40,6 @@ impl Problem {
         let Fold { context, mut state, .. } = fold;
         if Context::new(&setup)?.digest != context.digest {
             return Err(other_setup());
-        }
-        if state.compared.is_none() {
-            Context::refuse_explanations(&setup.settings)?;
         }
         if state.defects.recordings > 0 && on_defect == OnDefect::Refuse {
             return Err(reachtube_recordings::Error::Defects(state.defects.list()).into());

@@ -1,14 +1,11 @@
 //! What was proved, what speaks against it, and what the sets cost.
 
-use reachtube_reach::Disturbance;
 use reachtube_robot::JointKind;
-use reachtube_scalar::number::{at_least, counted, four_decimals, plural};
+use reachtube_scalar::number::{counted, four_decimals, plural};
 
 use crate::claim::verdict::Verdict;
 use crate::claim::witness::{PointVerdict, PointWitness};
-use crate::data::notion::Notion;
 use crate::data::settings::{Settings, States};
-use crate::explain::trace::TraceVerdict;
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::result::finding::{Finding, Severity};
@@ -193,46 +190,6 @@ impl Finding {
         )
     }
 
-    /// How many recordings are motions of the model, and what U lacks for the others.
-    pub(crate) fn traces(traces: &TraceVerdict, runs: usize, disturbance: Disturbance) -> Self {
-        let mut text = format!(
-            "{} of {runs} recordings proved to be one motion of the model each, within V",
-            runs - traces.unproved
-        );
-        let mut remedy = None;
-        if let Some(worst) = &traces.worst {
-            text += &match traces.factor {
-                Some(factor) => format!(
-                    "; U must be {} times as large for all, as {worst} needs",
-                    at_least(factor)
-                ),
-                None => {
-                    remedy = Some(Remedy::new("noise", ""));
-                    format!(
-                        "; no U up to 1024 times as large suffices for {worst}: {}its start may \
-                         lie at the edges of X0 and V, or its positions and velocities may not \
-                         agree, and then a larger V helps.",
-                        match disturbance {
-                            Disturbance::Constant => {
-                                remedy = Some(Remedy::new("disturbance", "sample"));
-                                "a disturbance that never changes cannot follow what changes \
-                                 during the motion; or "
-                            }
-                            Disturbance::Sample | Disturbance::Measurable => "",
-                        }
-                    )
-                }
-            };
-        }
-        let severity = if traces.unproved == 0 { Severity::Info } else { Severity::Failure };
-        let finding =
-            Self { place: traces.worst.clone(), ..Self::new(severity, Code::Traces, text) };
-        finding
-            .with("unproved", traces.unproved as f64)
-            .with("factor", traces.factor.unwrap_or(f64::INFINITY))
-            .remedied_by(remedy)
-    }
-
     /// Where a simulated motion diverged.
     pub(crate) fn unstable(case: &str, time: f64) -> Self {
         let text = format!(
@@ -292,16 +249,10 @@ impl Finding {
     }
 
     /// That the sets are not the smallest.
-    pub(crate) fn not_smallest(notion: Notion, gap: f64) -> Self {
-        let why = if notion.asks_motions() {
-            "all of U was widened by one factor until motions of the model passed through the \
-             recordings"
-        } else {
-            "the solver stopped above its lower bound"
-        };
+    pub(crate) fn not_smallest(gap: f64) -> Self {
         let text = format!(
-            "The sets enclose the recordings but are not the smallest: {why} (relative gap \
-             {gap:.1e})."
+            "The sets enclose the recordings but are not the smallest: the solver stopped above \
+             its lower bound (relative gap {gap:.1e})."
         );
         Self::new(Severity::Warning, Code::NotSmallest, text).with("gap", gap)
     }
