@@ -5,7 +5,9 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
-use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, TimeGrid, UncertainInput};
+use reachtube_reach::{
+    Flowpipe, FlowpipeSettings, Hyperrectangle, Nonlinear, TimeGrid, UncertainInput,
+};
 use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::{Lanes, Lanewise, Powers};
 
@@ -97,7 +99,8 @@ const STATE: [f64; 2] = [0.005, 0.03];
     sample_count = 10,
 )]
 fn flowpipe(bencher: Bencher, (kind, order, samples): (u32, u32, usize)) {
-    let system = model(kind, order).polynomial_system().unwrap();
+    let model = model(kind, order);
+    let system = model.polynomial_system().unwrap();
     let radius = [[STATE[0]; 6], [STATE[1]; 6]].concat();
     let initial = Hyperrectangle { centre: vec![0.0; 12], radius };
     let set = Hyperrectangle { centre: vec![0.0; 6], radius: INPUT.to_vec() };
@@ -105,7 +108,7 @@ fn flowpipe(bencher: Bencher, (kind, order, samples): (u32, u32, usize)) {
     let input = UncertainInput { measured: &held, set: &set };
     let follow = || {
         Flowpipe::new(
-            black_box(&system),
+            black_box(system),
             &grid,
             &[0.0; 12],
             &initial,

@@ -10,7 +10,7 @@
 //! - [`PolynomialModel::bound_remainder`] encloses the truncation error, forward dynamics minus
 //!   model, over an [`OperatingBox`] and returns it as a [`Remainder`].
 //! - [`ModelField`] simulates a model, and [`Linearisation`] differentiates it along a motion.
-//!   [`PolynomialModel::polynomial_system`] hands it to a flowpipe.
+//!   A model is a [`Nonlinear`](reachtube_reach::Nonlinear) system, which flowpipes enclose.
 //!
 //! # Examples
 //!
@@ -49,6 +49,7 @@ mod linear_model;
 mod linearisation;
 mod model_kind;
 mod operating_box;
+mod nonlinear;
 mod polynomial_model;
 mod preconditioned;
 mod records;

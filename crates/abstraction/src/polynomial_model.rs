@@ -1,5 +1,8 @@
 //! The polynomial models ẋ = f_p(x, u).
 
+use std::sync::OnceLock;
+
+use reachtube_reach::PolynomialSystem;
 use reachtube_robot::{JointKind, Robot, RobotDescription};
 use reachtube_scalar::{MapWorkspace, PolynomialMap, Powers, TaylorPolynomial};
 
@@ -42,6 +45,8 @@ pub struct PolynomialModel {
     map: PolynomialMap,
     robot: RobotDescription,
     remainder: Option<Remainder>,
+    /// The polynomials as flowpipes take them, made when first asked for.
+    pub(crate) system: OnceLock<PolynomialSystem>,
 }
 
 /// Scratch memory for evaluations of one model over the scalar T.
@@ -75,6 +80,7 @@ impl PolynomialModel {
             map,
             robot,
             remainder: None,
+            system: OnceLock::new(),
         }
     }
 
@@ -102,7 +108,7 @@ impl PolynomialModel {
         self.layout.joints
     }
 
-    /// Returns the number of states: 2n or 4n.
+    /// Returns the number of variables that a simulation integrates: 2n or 4n.
     #[must_use]
     pub fn states(&self) -> usize {
         self.layout.variables()

@@ -1,7 +1,7 @@
 //! A polynomial model as the systems of `reachtube-reach`.
 
 use nalgebra::{DMatrix, DVector};
-use reachtube_reach::{LinearSystem, PolynomialSystem};
+use reachtube_reach::{LinearSystem, PolynomialSystem, ReachError};
 use reachtube_robot::JointKind::Revolute;
 use reachtube_scalar::{Interval, TaylorPolynomial, TaylorSpace};
 
@@ -56,11 +56,7 @@ impl PolynomialModel {
     ///
     /// Outer: where polynomials in offsets are rewritten in the variables themselves, each
     /// coefficient encloses the exact one.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Space`] where states, inputs and order together do not fit in a Taylor space.
-    pub fn polynomial_system(&self) -> Result<PolynomialSystem> {
+    pub(crate) fn flowpipe_system(&self) -> Result<PolynomialSystem, ReachError> {
         let (n, layout) = (self.joints(), self.layout());
         // The system's variables are q, q̇, u and then the sines and cosines of the angles, which
         // are the positions of revolute joints.
@@ -86,7 +82,7 @@ impl PolynomialModel {
         let accelerations =
             self.acceleration().iter().map(|f| about_zero(f).embedded(&space, &indices));
         let components: Vec<_> = velocities.chain(accelerations).collect();
-        Ok(PolynomialSystem::trigonometric(2 * n, n, &angles, &components)?)
+        PolynomialSystem::trigonometric(2 * n, n, &angles, &components)
     }
 
     /// Returns the error for a term of `joint` (from 0) with these variables.

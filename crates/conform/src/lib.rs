@@ -13,6 +13,7 @@
 
 mod advice;
 mod answer;
+mod arm;
 mod carry_over;
 mod check;
 mod check_job;
@@ -44,7 +45,6 @@ pub use check::{Check, check};
 pub use check_job::{CheckJob, Opened};
 pub use claim::verdict::Verdict;
 pub use conformance::{Conformance, conform};
-pub use data::dynamics::Dynamics;
 pub use data::notion::Notion;
 pub use data::problem::{Keep, Problem};
 pub use data::recordings::Recordings;

@@ -56,7 +56,7 @@ pub fn reach(problem: &Problem, tube: &Tube) -> Result<Vec<SuiteReach>> {
         Enclosure::Outer => {
             let of_case = |(case, strand): (&Case, &Strand)| {
                 let flowpipe = strand.flowpipe()?;
-                let nominal = nominal(problem.dynamics().polynomials(), case);
+                let nominal = nominal(problem.nonlinear(), case);
                 let lost = strand.lost.clone();
                 let of = |nominal| SuiteReach::of_flowpipe(problem, case, nominal, flowpipe, lost);
                 Some(nominal.map(of))

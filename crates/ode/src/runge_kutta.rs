@@ -43,7 +43,7 @@ impl<S: Scalar> RungeKutta4<S> {
     /// # Panics
     ///
     /// Panics where the length of x differs from the dimension of the integrator.
-    pub fn integrate<F: VectorField<S>>(
+    pub fn integrate<F: VectorField<S> + ?Sized>(
         &mut self,
         field: &mut F,
         [t0, t1]: [f64; 2],
@@ -62,7 +62,7 @@ impl<S: Scalar> RungeKutta4<S> {
     /// # Panics
     ///
     /// Panics where the length of x differs from the dimension of the integrator.
-    pub(crate) fn step<F: VectorField<S>>(
+    pub(crate) fn step<F: VectorField<S> + ?Sized>(
         &mut self,
         field: &mut F,
         t: f64,

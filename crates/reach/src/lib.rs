@@ -5,6 +5,7 @@ mod grid;
 mod linear;
 mod polynomial;
 mod sets;
+mod system;
 mod upward;
 
 pub use error::ReachError;
@@ -21,3 +22,4 @@ pub use sets::{
     GeneratorRows, Hyperrectangle, IntervalMatrix, IntervalVector, Membership, MembershipProof,
     MembershipWorkspace, Place, Zonotope,
 };
+pub use system::{Nonlinear, Slopes, System};

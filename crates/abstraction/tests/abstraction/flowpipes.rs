@@ -1,6 +1,8 @@
 use reachtube_abstraction::ModelKind;
 use reachtube_ode::InitialValueProblem;
-use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, TimeGrid, UncertainInput};
+use reachtube_reach::{
+    Flowpipe, FlowpipeSettings, Hyperrectangle, Nonlinear, TimeGrid, UncertainInput,
+};
 use reachtube_robot::Robot;
 
 use crate::common::{model, number, numbers, simulated};
@@ -18,7 +20,7 @@ fn flowpipes_of_the_models_enclose_their_runs() {
         let nominal = numbers(&mut seed, 6 * 25, 2.0);
         let (initial, disturbance) = (0.003, 0.2);
         let flowpipe = Flowpipe::new(
-            &system,
+            system,
             &TimeGrid::uniform(0.004, 26),
             &[q.clone(), qd.clone()].concat(),
             &Hyperrectangle { centre: vec![0.0; 12], radius: vec![initial; 12] },

@@ -4,7 +4,9 @@ use reachtube_abstraction::{
     ExpansionPoint, Linearisation, ModelKind, OperatingBox, PolynomialModel,
 };
 use reachtube_ode::InitialValueProblem;
-use reachtube_reach::{Flowpipe, FlowpipeSettings, Hyperrectangle, TimeGrid, UncertainInput};
+use reachtube_reach::{
+    Flowpipe, FlowpipeSettings, Hyperrectangle, Nonlinear, TimeGrid, UncertainInput,
+};
 use reachtube_robot::Robot;
 
 use crate::common::{KINDS, largest, number, numbers, simulated, truth};
@@ -157,7 +159,7 @@ fn flowpipes_enclose_runs() {
         let (centre, nominal) = ([0.3, 0.7, 0.8, -0.3], numbers(&mut seed, 2 * 25, 4.0));
         let (initial, disturbance) = (0.003, 0.2);
         let flowpipe = Flowpipe::new(
-            &system,
+            system,
             &TimeGrid::uniform(0.004, 26),
             &centre,
             &Hyperrectangle { centre: vec![0.0; 4], radius: vec![initial; 4] },

@@ -3,7 +3,6 @@
 pub(crate) mod case;
 pub(crate) mod condition;
 pub(crate) mod correction;
-pub(crate) mod dynamics;
 pub(crate) mod envelope;
 pub(crate) mod fold;
 pub(crate) mod input;

@@ -2,11 +2,11 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
+use reachtube_reach::{Nonlinear, System};
 use reachtube_recordings::{Run, RunEntry, RunSource, State};
 use reachtube_robot::{Robot, RobotDescription};
 
 use crate::data::case::Case;
-use crate::data::dynamics::Dynamics;
 use crate::data::kept::KeptRuns;
 use crate::data::notes::recording_notes;
 use crate::data::origin::Origin;
@@ -159,8 +159,17 @@ impl Problem {
 
     /// Returns the model.
     #[must_use]
-    pub fn dynamics(&self) -> &Dynamics {
+    pub fn dynamics(&self) -> &System {
         &self.setup.dynamics
+    }
+
+    /// Returns the model, which is not linear.
+    ///
+    /// # Panics
+    ///
+    /// For a linear model, which has steps of its own.
+    pub(crate) fn nonlinear(&self) -> &dyn Nonlinear {
+        self.dynamics().nonlinear_system().expect("steps of models that are not linear")
     }
 
     /// Returns the settings.

@@ -1,12 +1,13 @@
 use std::collections::BTreeMap;
 
 use reachtube_abstraction::{OperatingBox, PolynomialModel};
+use reachtube_reach::System;
 use reachtube_recordings::{GapLimit, ReadOptions};
 use reachtube_robot::Robot;
 
+use crate::arm::system::{system, system_of};
 use crate::data::condition::Condition;
 use crate::data::correction::InputCorrection;
-use crate::data::dynamics::Dynamics;
 use crate::data::notion::Notion;
 use crate::data::settings::{Equations, Settings};
 use crate::error::{Error, Result};
@@ -20,7 +21,7 @@ pub struct Setup {
     /// The robot.
     pub(crate) robot: Robot,
     /// The model of its motion.
-    pub(crate) dynamics: Dynamics,
+    pub(crate) dynamics: System,
     /// The settings.
     pub(crate) settings: Settings,
     /// The nominal initial states of suites by their name, 2n each, where they are known. Any
@@ -41,7 +42,7 @@ impl Setup {
     /// Settings that do not fit the robot, a robot that is not physical at the expansion point.
     pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
         settings.validate(robot.joint_count())?;
-        let dynamics = Dynamics::new(&robot, &settings)?;
+        let dynamics = system(&robot, &settings)?;
         Self::of(robot, dynamics, settings)
     }
 
@@ -56,7 +57,7 @@ impl Setup {
         let settings = settings.with_abstraction(&model)?;
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
-        let dynamics = Dynamics::of(model, settings.method);
+        let dynamics = system_of(model, settings.method);
         Self::of(robot, dynamics, settings)
     }
 
@@ -65,7 +66,7 @@ impl Setup {
     /// # Errors
     ///
     /// [`Error::Equations`] for the robot's own equations about a model that is not linear.
-    pub fn of(robot: Robot, dynamics: Dynamics, settings: Settings) -> Result<Self> {
+    pub fn of(robot: Robot, dynamics: System, settings: Settings) -> Result<Self> {
         if settings.equations == Equations::Robot && dynamics.linear_system().is_none() {
             return Err(Error::Equations);
         }
@@ -82,7 +83,7 @@ impl Setup {
 
     /// Returns the model of its motion.
     #[must_use]
-    pub fn dynamics(&self) -> &Dynamics {
+    pub fn dynamics(&self) -> &System {
         &self.dynamics
     }
 

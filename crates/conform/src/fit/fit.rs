@@ -1,7 +1,7 @@
 use rayon::prelude::*;
 use reachtube_abstraction::Abstraction;
 
-use crate::data::dynamics::Dynamics;
+use crate::arm::system::system;
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::data::settings::{Equations, Method, Weights};
@@ -293,7 +293,7 @@ fn linear_setup(setup: &Setup) -> Result<Setup> {
     let mut linear = setup.clone();
     linear.settings.abstraction = Abstraction::default();
     linear.settings.method = Method::Program;
-    linear.dynamics = Dynamics::new(&linear.robot, &linear.settings)?;
+    linear.dynamics = system(&linear.robot, &linear.settings)?;
     Ok(linear)
 }
 

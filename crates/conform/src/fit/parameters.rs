@@ -2,8 +2,8 @@ use std::f64::consts::LN_10;
 
 use reachtube_robot::{GravityMoments, ParameterKind, Robot, RobotDescription};
 
+use crate::arm::system::system;
 use crate::data::correction::InputCorrection;
-use crate::data::dynamics::Dynamics;
 use crate::data::settings::Equations;
 use crate::data::setup::Setup;
 use crate::error::Result;
@@ -334,7 +334,7 @@ impl<'a> Parameters<'a> {
         }
         let robot = Robot::from_description(&description)?;
         let correction = Some(correction);
-        let (dynamics, condition) = (Dynamics::new(&robot, settings)?, None);
+        let (dynamics, condition) = (system(&robot, settings)?, None);
         let (settings, nominal_starts) = (settings.clone(), nominal_starts.clone());
         Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition })
     }

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use nalgebra::DMatrix;
-use reachtube_abstraction::{Records, TermRecord};
+use reachtube_abstraction::{PolynomialModel, Records, TermRecord};
 use reachtube_files::{json, write};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_recordings::Preparation;
@@ -14,6 +14,7 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::arm::system::polynomials;
 use crate::claim::verdict::Verdict;
 use crate::conformance::Conformance;
 use crate::data::correction::InputCorrection;
@@ -194,7 +195,7 @@ impl Model {
         let linear = dynamics.linear_system();
         let polynomial = match linear {
             Some(_) => Records::default(),
-            None => dynamics.polynomials().records(),
+            None => polynomials(dynamics).map(PolynomialModel::records).unwrap_or_default(),
         };
         let matrix =
             |of: fn(&LinearSystem) -> &DMatrix<f64>| linear.map_or_else(Vec::new, |s| rows(of(s)));

@@ -2,11 +2,11 @@
 
 use nalgebra::{DMatrix, DVector};
 use reachtube_abstraction::{PolynomialModel, Records};
-use reachtube_reach::{Hyperrectangle, LinearSystem};
+use reachtube_reach::{Hyperrectangle, LinearSystem, System};
 use reachtube_robot::Robot;
 
+use crate::arm::system::{system, system_of};
 use crate::claim::verdict::SuiteVerdict;
-use crate::data::dynamics::Dynamics;
 use crate::data::settings::{Settings, check_allowance};
 use crate::data::setup::Setup;
 use crate::model::file::Model;
@@ -99,7 +99,7 @@ impl Model {
     }
 
     /// Returns the model bit by bit as the file has it, or what speaks against it.
-    fn dynamics(&self, robot: &Robot) -> Result<Dynamics, String> {
+    fn dynamics(&self, robot: &Robot) -> Result<System, String> {
         let Settings { abstraction, expansion_point, method, .. } = &self.settings;
         let mismatch =
             || changed("it has not the matrices or polynomials that its settings ask for");
@@ -112,13 +112,13 @@ impl Model {
             let model =
                 PolynomialModel::from_records(robot, *abstraction, expansion_point, records)
                     .map_err(|error| error.to_string())?;
-            let dynamics = Dynamics::of(model, *method);
+            let dynamics = system_of(model, *method);
             return match dynamics.linear_system() {
                 None => Ok(dynamics),
                 Some(_) => Err(mismatch()),
             };
         }
-        let made = Dynamics::new(robot, &self.settings).map_err(|error| error.to_string())?;
+        let made = system(robot, &self.settings).map_err(|error| error.to_string())?;
         let expected = made.linear_system().ok_or_else(mismatch)?;
         let drift = DVector::from_vec(self.drift.clone());
         let own = LinearSystem::new(matrix(&self.a), matrix(&self.b), drift)
@@ -129,7 +129,7 @@ impl Model {
                 point",
             ));
         }
-        Ok(made.with_linear(own))
+        Ok(System::Linear(own))
     }
 }
 

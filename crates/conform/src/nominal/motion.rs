@@ -1,11 +1,10 @@
-use reachtube_abstraction::{Linearisation, ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, InitialValueProblem, Outcome};
+use reachtube_reach::{Nonlinear, System};
 use reachtube_recordings::State;
 use reachtube_robot::Robot;
 
 use crate::data::case::Case;
 use crate::data::correction::InputCorrection;
-use crate::data::dynamics::Dynamics;
 use crate::data::runaway::Runaway;
 use crate::data::settings::{Equations, Settings};
 use crate::error::{Error, Result};
@@ -29,7 +28,7 @@ pub(crate) struct Corrected<'a> {
     /// The robot.
     pub robot: &'a Robot,
     /// The model.
-    pub dynamics: &'a Dynamics,
+    pub dynamics: &'a System,
     /// The correction.
     pub correction: &'a InputCorrection,
     /// The settings.
@@ -81,9 +80,12 @@ impl Corrected<'_> {
                 equations.replace(x, u);
             }
         };
-        match steps {
-            Some(steps) => Ok(linear(case, steps, correct)),
-            None => Ok((polynomial(self.dynamics.polynomials(), case, correct)?, None)),
+        match (steps, self.dynamics) {
+            (Some(steps), _) => Ok(linear(case, steps, correct)),
+            (None, System::Nonlinear(system)) => Ok((nonlinear(&**system, case, correct)?, None)),
+            (None, System::Linear(system)) => {
+                Ok(linear(case, &LinearSteps::new(system, case.grid.times()), correct))
+            }
         }
     }
 }
@@ -115,23 +117,22 @@ fn linear(
     (NominalMotion { states, inputs }, None)
 }
 
-fn polynomial(
-    model: &PolynomialModel,
+fn nonlinear(
+    system: &dyn Nonlinear,
     case: &Case,
     mut correct: impl FnMut(usize, &[f64], &mut [f64]),
 ) -> Result<NominalMotion> {
     let (n, times) = (case.joints(), case.grid.times());
-    let substeps = substeps(&mut Linearisation::new(model), case, &case.start);
-    let mut field = ModelField::new(model);
-    let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
-    let mut x = model.state(&case.start[..n], &case.start[n..]);
+    let substeps = substeps(&mut *system.slopes(), case, &case.start);
+    let (mut field, mut x) = (system.field(), system.lift(&case.start));
+    let mut ensemble = Ensemble::<f64>::new(x.len()).bounded_by(BOUND);
     let (mut inputs, mut states) = (case.inputs.to_vec(), case.start.clone());
     for k in 0..times.len().saturating_sub(1) {
         let u = &mut inputs[k * n..(k + 1) * n];
         correct(k, &x[..2 * n], u);
         let (run, mut next) = ([InitialValueProblem { start: &x, inputs: u }], x.clone());
         let outcomes =
-            ensemble.integrate(&mut field, &times[k..k + 2], substeps, &run, |_, _, x| {
+            ensemble.integrate(&mut *field, &times[k..k + 2], substeps, &run, |_, _, x| {
                 next.copy_from_slice(x);
             });
         if let Outcome::Diverged { .. } = outcomes[0] {

@@ -98,7 +98,7 @@ impl Sums {
 /// The nominal motion of a case, samples x 2n, to rounding.
 fn nominal_states(problem: &Problem, case: &Case) -> Result<Vec<f64>> {
     if problem.dynamics().linear_system().is_none() {
-        return nominal(problem.dynamics().polynomials(), case);
+        return nominal(problem.nonlinear(), case);
     }
     if case.run.is_some() {
         let Nominal { trajectory, .. } = Nominal::new(problem.grids()?, case);

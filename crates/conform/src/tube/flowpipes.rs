@@ -83,7 +83,7 @@ pub(crate) fn rows_outside(
     case: &Case,
     sets: &UncertaintySets,
 ) -> Result<Option<usize>> {
-    let system = problem.dynamics().polynomial_system()?;
+    let system = problem.nonlinear().polynomial_system()?;
     let flowpipe = attempt(system, case, sets, VERTEX_VARIABLES[0], None)?;
     let mut outside = 0;
     let is_reached = for_each_row(problem, case, flowpipe, sets, |row| {
@@ -103,7 +103,7 @@ pub(crate) fn enclosed(
     sets: &UncertaintySets,
     effort: Effort,
 ) -> Result<Enclosed> {
-    let system = problem.dynamics().polynomial_system()?;
+    let system = problem.nonlinear().polynomial_system()?;
     let of = |vertices: usize| attempt(system, case, sets, vertices, None);
     let flowpipe = furthest(effort, of, |flowpipe| flowpipe)?;
     let mut all = true;

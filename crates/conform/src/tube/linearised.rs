@@ -64,7 +64,7 @@ pub(super) fn round<'a>(problem: &'a Problem, state: &mut SearchState) -> Result
 /// Returns the weights of the states, s, by the deviations from the nominal motions.
 pub(super) fn weights(problem: &Problem) -> Result<Vec<f64>> {
     let deviation = |case: &Case| {
-        let nominal = nominal(problem.dynamics().polynomials(), case)?;
+        let nominal = nominal(problem.nonlinear(), case)?;
         let states = 2 * case.joints();
         let off = |k: usize, i: usize, x: f64| x - nominal[k * states + i];
         Ok(case.measured.map(off, off))
@@ -82,7 +82,7 @@ fn sensitivities(
     sets: &UncertaintySets,
     directions: &[Direction],
 ) -> Result<Vec<Sensitivity>> {
-    let (model, disturbance) = (problem.dynamics().polynomials(), problem.settings().disturbance);
+    let (model, disturbance) = (problem.nonlinear(), problem.settings().disturbance);
     let of = |(index, case): (usize, &Case)| {
         let mine = directions.iter().filter(|known| known.at.0 as usize == index);
         let asked: Vec<&Direction> = mine.collect();
@@ -98,7 +98,7 @@ fn corrections(
     state: &SearchState,
     sensitivities: &[Sensitivity],
 ) -> Result<Vec<Correction>> {
-    let model = problem.dynamics().polynomials();
+    let model = problem.nonlinear();
     let of = |(case, sensitivity): (&Case, &Sensitivity)| match state.rounds {
         0 => Correction::none(case.grid.len(), 2 * case.joints()),
         _ => Correction::new(model, case, &state.sets, sensitivity),

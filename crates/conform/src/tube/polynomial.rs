@@ -45,7 +45,7 @@ impl<'a> Polynomial<'a> {
         sets: &UncertaintySets,
         watch: Option<&Watch>,
     ) -> Result<(Strand, Judged)> {
-        let system = self.problem.dynamics().polynomial_system()?;
+        let system = self.problem.nonlinear().polynomial_system()?;
         let of = |vertices: usize| {
             let (judged, count) = (Mutex::new(Judged::default()), AtomicUsize::new(0));
             let visit = |sample: usize, zonotope: Zonotope| {

@@ -1,8 +1,6 @@
 //! A model linearised along its nominal motion: how far X0 and U move each state, to first order.
 
-use reachtube_abstraction::{Linearisation, PolynomialModel};
-use reachtube_reach::Disturbance;
-use reachtube_scalar::Lanes;
+use reachtube_reach::{Disturbance, Nonlinear};
 
 use crate::data::case::Case;
 use crate::data::shape::Shape;
@@ -11,9 +9,6 @@ use crate::nominal::simulate::{simulate, substeps};
 use crate::sets::UncertaintySets;
 use crate::tube::direction::{Direction, DirectionRow};
 use crate::tube::state_sensitivities::{Node, StateSensitivities};
-
-/// Several motions that are simulated at once.
-pub(super) type Many = Lanes<8>;
 
 /// Samples of a case at which worst-case motions are simulated, at most.
 const NODES: usize = 24;
@@ -44,7 +39,7 @@ impl Sensitivity {
     ///
     /// The time, s, up to which the model could be followed, where it runs away.
     pub(super) fn new(
-        model: &PolynomialModel,
+        system: &dyn Nonlinear,
         case: &Case,
         sets: &UncertaintySets,
         disturbance: Disturbance,
@@ -57,9 +52,9 @@ impl Sensitivity {
         };
         let start = shifted(&case.start, &sets.initial_set.centre);
         let inputs = shifted(&case.inputs, &sets.input_set.centre);
-        let mut linearisation = Linearisation::new(model);
-        let substeps = substeps(&mut linearisation, case, &start);
-        let nominal = simulate(model, times, substeps, &start, &inputs)?;
+        let mut slopes = system.slopes();
+        let substeps = substeps(&mut *slopes, case, &start);
+        let nominal = simulate(system, times, substeps, &start, &inputs)?;
         let shape = Shape { states: 2 * n, inputs: n };
         let mut grown = StateSensitivities::new(shape, times.len(), disturbance);
         let stride = times.len().div_ceil(NODES).max(1);
@@ -80,7 +75,7 @@ impl Sensitivity {
             (1..times.len()).map(|k| between(&found.nominal[(k - 1) * 2 * n..][..4 * n])).collect();
         let points: Vec<(&[f64], &[f64])> =
             middles.iter().map(|x| &**x).zip(inputs.chunks_exact(n)).collect();
-        linearisation.along(&points, |at, a, b| {
+        slopes.along(&points, &mut |at, [a, b]| {
             let k = at + 1;
             grown.advance(a, b, times[k] - times[k - 1]);
             grown.write_into(&mut found.coefficients);

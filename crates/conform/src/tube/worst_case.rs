@@ -2,14 +2,15 @@
 //! the model itself, which reaches further or less far.
 
 use rayon::prelude::*;
-use reachtube_abstraction::{ModelField, PolynomialModel};
 use reachtube_ode::{Ensemble, InitialValueProblem};
+use reachtube_reach::Nonlinear;
+use reachtube_scalar::Lanes;
 
 use crate::data::case::Case;
 use crate::data::side::Side;
 use crate::nominal::simulate::BOUND;
 use crate::sets::UncertaintySets;
-use crate::tube::sensitivity::{Many, Sensitivity};
+use crate::tube::sensitivity::Sensitivity;
 use crate::tube::state_sensitivities::Node;
 
 /// Rows whose recordings stay below this part of the linearised radius get no correction: a small
@@ -44,14 +45,14 @@ impl Correction {
     ///
     /// Inner, unrounded: at the nodes each corrected bound is the state of a motion of the model.
     pub(super) fn new(
-        model: &PolynomialModel,
+        system: &dyn Nonlinear,
         case: &Case,
         sets: &UncertaintySets,
         sensitivity: &Sensitivity,
     ) -> Self {
         let states = 2 * case.joints();
         let found =
-            sensitivity.nodes.par_iter().map(|node| at_node(model, case, sets, sensitivity, node));
+            sensitivity.nodes.par_iter().map(|node| at_node(system, case, sets, sensitivity, node));
         let found: Vec<(Vec<f64>, bool)> = found.collect();
         let mut correction = Self::none(case.grid.len(), states);
         let (mut from, mut before) = (0, &vec![0.0; states * 2]);
@@ -75,7 +76,7 @@ impl Correction {
 /// Returns the corrections at one sample, 2n x 2 (upper, lower), and whether a motion ran away,
 /// which counts as no correction.
 fn at_node(
-    model: &PolynomialModel,
+    system: &dyn Nonlinear,
     case: &Case,
     sets: &UncertaintySets,
     sensitivity: &Sensitivity,
@@ -94,14 +95,15 @@ fn at_node(
     let all = (0..states).flat_map(|i| [(i, Side::Upper), (i, Side::Lower)]);
     let places: Vec<(usize, Side)> = all.filter(is_near).collect();
     let motions: Vec<_> =
-        places.iter().map(|&(i, side)| worst_case(model, case, sets, node, i, side)).collect();
+        places.iter().map(|&(i, side)| worst_case(system, case, sets, node, i, side)).collect();
     let runs: Vec<InitialValueProblem> =
         motions.iter().map(|(start, inputs)| InitialValueProblem { start, inputs }).collect();
     let mut further = vec![0.0; 2 * states];
-    let mut ensemble = Ensemble::<Many>::new(model.states()).bounded_by(BOUND);
+    let coordinates = system.lift(&case.start).len();
+    let mut ensemble = Ensemble::<Lanes<8>>::new(coordinates).bounded_by(BOUND);
     let times = &case.grid.times()[..=k];
     let outcomes = ensemble.integrate(
-        &mut ModelField::new(model),
+        &mut *system.field_of_many(),
         times,
         sensitivity.substeps,
         &runs,
@@ -128,7 +130,7 @@ fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usiz
 
 /// Returns the start and inputs that take the linearisation furthest.
 fn worst_case(
-    model: &PolynomialModel,
+    system: &dyn Nonlinear,
     case: &Case,
     sets: &UncertaintySets,
     node: &Node,
@@ -146,5 +148,5 @@ fn worst_case(
         let joint = at % n;
         case.inputs[at] + vertex(u.centre[joint], u.radius[joint], node.input[at * states + i])
     };
-    (model.state(&start[..n], &start[n..]), (0..node.sample * n).map(input).collect())
+    (system.lift(&start), (0..node.sample * n).map(input).collect())
 }

@@ -3,7 +3,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use crate::common::{
     self, Random, Recorded, bent, check_against, conform_all, grid, read, read_with, write_data_set,
@@ -13,11 +13,11 @@ use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::Method;
 use reachtube_conform::tube::Enclosure;
 use reachtube_conform::{
-    Conformance, Dynamics, Model, Notion, Progress, Settings, Setup, Silent, Tube, UncertaintySets,
-    Verdict, check, conform,
+    Conformance, Model, Notion, Progress, Settings, Setup, Silent, Tube, UncertaintySets, Verdict,
+    check, conform,
 };
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
-use reachtube_reach::{Disturbance, Hyperrectangle};
+use reachtube_reach::{Disturbance, Hyperrectangle, System as Dynamics};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
@@ -86,7 +86,7 @@ fn assert_close(a: &UncertaintySets, b: &UncertaintySets, tolerance: f64) {
 
 /// The route of models that are not linear, on a linear one.
 fn the_long_way(robot: &Robot, folder: &Path, names: &[&str], settings: &Settings) -> Conformance {
-    let dynamics = Dynamics::polynomial(model_of(robot, settings));
+    let dynamics = Dynamics::Nonlinear(Arc::new(model_of(robot, settings)));
     let setup = Setup::of(robot.clone(), dynamics, settings.clone()).unwrap();
     conform_all(&read_with(setup, folder, names))
 }

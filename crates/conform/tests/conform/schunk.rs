@@ -7,8 +7,8 @@ use crate::common::{self, check_against, conform_all, read};
 use nalgebra::{DMatrix, DVector};
 use reachtube_conform::next_motion::Trend;
 use reachtube_conform::settings::{Centre, States};
-use reachtube_conform::{Conformance, Dynamics, Model, Problem, Settings};
-use reachtube_reach::Disturbance;
+use reachtube_conform::{Conformance, Model, Problem, Settings};
+use reachtube_reach::{Disturbance, System};
 use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
 
@@ -153,7 +153,7 @@ fn violations_are_counted_as_a_plain_simulation_counts_them() {
 }
 
 /// (sample, state, excess) by plain floating point.
-fn plain_excess(dynamics: &Dynamics, model: &Model, runs: &[Run]) -> Vec<(usize, usize, f64)> {
+fn plain_excess(dynamics: &System, model: &Model, runs: &[Run]) -> Vec<(usize, usize, f64)> {
     let system = dynamics.linear_system().expect("model 1 of order 1 is linear");
     let sets = model.sets();
     let vector = |values: &[f64]| -> DVector<f64> { DVector::from_column_slice(values) };

@@ -73,7 +73,7 @@ impl ExportCase {
                 harmless(problem.robot().name()),
                 harmless(&case.name)
             ),
-            system: System::new(problem.dynamics()),
+            system: System::new(problem.dynamics(), problem.robot().kinds()),
             start: case.start.clone(),
             sets: tube.sets.clone(),
             grid: case.grid.as_ref().clone(),

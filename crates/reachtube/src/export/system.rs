@@ -1,8 +1,7 @@
 //! The right-hand side of a model, as terms that every tool can write.
 
 use reachtube_abstraction::PolynomialModel;
-use reachtube_conform::Dynamics;
-use reachtube_reach::LinearSystem;
+use reachtube_reach::{LinearSystem, System as Dynamics};
 use reachtube_recordings::State;
 use reachtube_robot::JointKind;
 
@@ -22,7 +21,8 @@ pub struct System {
     pub linear: Option<LinearSystem>,
     /// Kinds of the joints, n.
     pub kinds: Vec<JointKind>,
-    model: PolynomialModel,
+    /// The model where it is not affine.
+    model: Option<PolynomialModel>,
 }
 
 /// A polynomial in states and inputs: a sum of terms.
@@ -55,18 +55,18 @@ pub struct Factor {
 impl System {
     /// Takes the model of `dynamics`, which counts as affine wherever its polynomials are.
     #[must_use]
-    pub(crate) fn new(dynamics: &Dynamics) -> Self {
-        let model = dynamics.polynomials();
-        let (n, kinds) = (model.joints(), model.joint_kinds().to_vec());
-        let linear = dynamics.linear_system().cloned().or_else(|| model.linear_system().ok());
+    pub(crate) fn new(dynamics: &Dynamics, kinds: Vec<JointKind>) -> Self {
+        let n = kinds.len();
+        let model = dynamics.nonlinear_system();
+        let model = model.and_then(|model| model.any().downcast_ref::<PolynomialModel>());
+        let affine_model = || model.and_then(|model| model.linear_system().ok());
+        let linear = dynamics.linear_system().cloned().or_else(affine_model);
+        let model = model.filter(|_| linear.is_none());
         let mut states: Vec<String> =
             (0..2 * n).map(|i| State::from_index(i, n).to_string()).collect();
         let inputs = (1..=n).map(|j| format!("u{j}")).collect();
-        let rates = match &linear {
-            Some(system) => affine(system),
-            None => polynomial(model),
-        };
-        if linear.is_none() && model.layout().trigonometric {
+        let rates = linear.as_ref().map(affine).or(model.map(polynomial)).unwrap_or_default();
+        if let Some(model) = model.filter(|model| model.layout().trigonometric) {
             let names = model.variable_names();
             // The sine of a prismatic joint is its position, under a name of its own.
             let copied = |(i, name): (usize, &String)| match kinds[i % n] {
@@ -76,7 +76,7 @@ impl System {
             };
             states.extend(names[n..3 * n].iter().enumerate().map(copied));
         }
-        Self { states, inputs, rates, linear, kinds, model: model.clone() }
+        Self { states, inputs, rates, linear, kinds, model: model.cloned() }
     }
 
     /// Returns the number of states N.
@@ -95,17 +95,17 @@ impl System {
     /// Returns the state of positions `q` and velocities `qd`, n each: N values.
     #[must_use]
     pub fn state(&self, q: &[f64], qd: &[f64]) -> Vec<f64> {
-        match self.linear {
-            Some(_) => [q, qd].concat(),
-            None => self.model.state(q, qd),
-        }
+        self.model.as_ref().map_or_else(|| [q, qd].concat(), |model| model.state(q, qd))
     }
 
     /// Evaluates ẋ at the state `x`, N, and the input `u`, n, without the terms of this export: A,
     /// B and d of an affine model, and the model's own evaluation of any other.
     #[must_use]
     pub fn rate(&self, x: &[f64], u: &[f64]) -> Vec<f64> {
-        let Some(system) = &self.linear else { return self.model.rate(x, u) };
+        if let Some(model) = &self.model {
+            return model.rate(x, u);
+        }
+        let Some(system) = &self.linear else { return Vec::new() };
         let product = |row: &[f64], by: &[f64]| row.iter().zip(by).map(|(a, b)| a * b).sum::<f64>();
         let row = |i: usize| {
             let [a, b] = [system.a(), system.b()]

@@ -1,10 +1,9 @@
 //! How a disturbance moves the state at a later sample: the adjoint of the linearised model.
 
 use nalgebra::{DMatrix, DVector};
-use reachtube_abstraction::{Linearisation, ModelField};
-use reachtube_conform::Dynamics;
 use reachtube_conform::data::Case;
 use reachtube_ode::{Ensemble, InitialValueProblem};
+use reachtube_reach::System;
 
 /// Bound of h |A| for a Runge-Kutta step of length h: its error is then below 1e-7 of the change.
 const STEP_NORM: f64 = 0.1;
@@ -23,7 +22,7 @@ pub(super) struct Motion {
 impl Motion {
     /// Simulates a model along the samples of a case from `start` (2n) under `inputs` (samples x
     /// n); ends early if the motion runs away.
-    pub(super) fn new(dynamics: &Dynamics, case: &Case, start: &[f64], inputs: &[f64]) -> Self {
+    pub(super) fn new(dynamics: &System, case: &Case, start: &[f64], inputs: &[f64]) -> Self {
         let (n, times) = (case.joints(), case.grid.times());
         let inputs = &inputs[..n * times.len().saturating_sub(1)];
         let mut states: Vec<f64> = Vec::with_capacity(times.len() * 2 * n);
@@ -32,28 +31,35 @@ impl Motion {
             let norm = a.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
             (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
         };
-        let slopes = if let Some(system) = dynamics.linear_system() {
-            let run = [InitialValueProblem { start, inputs }];
-            let mut ensemble = Ensemble::<f64>::new(2 * n).bounded_by(BOUND);
-            let substeps = substeps(system.a());
-            let _ = ensemble.integrate(&mut &*system, times, substeps, &run, &mut observe);
-            let steps = (states.len() / (2 * n)).saturating_sub(1);
-            vec![[system.a().clone(), system.b().clone()]; steps]
-        } else {
-            let model = dynamics.polynomials();
-            let mut linearisation = Linearisation::new(model);
-            let mut at = |x: &[f64], u: &[f64]| {
-                let (a, b) = linearisation.at(x, u);
-                [a.clone(), b.clone()]
-            };
-            let [a, _] = at(start, inputs.get(..n).unwrap_or(&vec![0.0; n]));
-            let lifted = model.state(&start[..n], &start[n..]);
-            let run = [InitialValueProblem { start: &lifted, inputs }];
-            let mut ensemble = Ensemble::<f64>::new(model.states()).bounded_by(BOUND);
-            let mut field = ModelField::new(model);
-            let _ = ensemble.integrate(&mut field, times, substeps(&a), &run, &mut observe);
-            let rows = states.chunks_exact(2 * n).zip(inputs.chunks_exact(n));
-            rows.map(|(x, u)| at(x, u)).collect()
+        let slopes = match dynamics {
+            System::Linear(system) => {
+                let run = [InitialValueProblem { start, inputs }];
+                let mut ensemble = Ensemble::<f64>::new(2 * n).bounded_by(BOUND);
+                let substeps = substeps(system.a());
+                let _ = ensemble.integrate(&mut &*system, times, substeps, &run, &mut observe);
+                let steps = (states.len() / (2 * n)).saturating_sub(1);
+                vec![[system.a().clone(), system.b().clone()]; steps]
+            }
+            System::Nonlinear(system) => {
+                let mut slopes = system.slopes();
+                let mut at = |x: &[f64], u: &[f64]| {
+                    let (a, b) = slopes.at(x, u);
+                    [a.clone(), b.clone()]
+                };
+                let [a, _] = at(start, inputs.get(..n).unwrap_or(&vec![0.0; n]));
+                let lifted = system.lift(start);
+                let run = [InitialValueProblem { start: &lifted, inputs }];
+                let mut ensemble = Ensemble::<f64>::new(lifted.len()).bounded_by(BOUND);
+                let _ = ensemble.integrate(
+                    &mut *system.field(),
+                    times,
+                    substeps(&a),
+                    &run,
+                    &mut observe,
+                );
+                let rows = states.chunks_exact(2 * n).zip(inputs.chunks_exact(n));
+                rows.map(|(x, u)| at(x, u)).collect()
+            }
         };
         Self { states, slopes }
     }

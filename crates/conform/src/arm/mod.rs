@@ -1,0 +1,3 @@
+//! What knows robots.
+
+pub(crate) mod system;

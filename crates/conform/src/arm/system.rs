@@ -1,0 +1,34 @@
+use std::sync::Arc;
+
+use reachtube_abstraction::{Abstraction, PolynomialModel};
+use reachtube_reach::System;
+use reachtube_robot::Robot;
+
+use crate::data::settings::{Method, Settings};
+use crate::error::Result;
+
+/// Makes the model of `robot` that `settings` ask for.
+///
+/// # Errors
+///
+/// When the robot is not physical at the expansion point, or the order does not fit.
+pub(crate) fn system(robot: &Robot, settings: &Settings) -> Result<System> {
+    let Abstraction { model, order } = settings.abstraction;
+    let polynomials = PolynomialModel::new(robot, model, order, &settings.expansion_point)?;
+    Ok(system_of(polynomials, settings.method))
+}
+
+/// Takes a model; it counts as linear when its polynomials are and `method` solves a program.
+/// [`Method::Bisection`] has no program.
+pub(crate) fn system_of(polynomials: PolynomialModel, method: Method) -> System {
+    let linear = match method {
+        Method::Program => polynomials.linear_system().ok(),
+        Method::Bisection => None,
+    };
+    linear.map_or_else(|| System::Nonlinear(Arc::new(polynomials)), System::Linear)
+}
+
+/// Returns the polynomials of a model that is not treated as linear.
+pub(crate) fn polynomials(system: &System) -> Option<&PolynomialModel> {
+    system.nonlinear_system().and_then(|system| system.any().downcast_ref())
+}
