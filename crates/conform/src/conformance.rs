@@ -313,7 +313,7 @@ fn trust(
     match (calibration, optimality_gap) {
         (Some(calibration), _) => Trust::of_calibration(problem, calibration, is_proved),
         (None, Some(gap)) if gap > LARGEST_GAP => Trust::without_optimum(recordings, gap),
-        _ if problem.setup().correction.is_some() => Trust::of_fitted_nominal(recordings),
+        _ if problem.setup().drive.is_fitted() => Trust::of_fitted_nominal(recordings),
         _ => Trust::of_fit(problem, tight),
     }
 }

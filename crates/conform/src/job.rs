@@ -105,7 +105,7 @@ impl Basis {
             }
             Self::Abstraction(model) => {
                 let setup = Setup::with_abstraction(*model, settings)?;
-                setup.robot.check_physical()?;
+                setup.robot().check_physical()?;
                 Ok(setup)
             }
         }

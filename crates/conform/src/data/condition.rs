@@ -1,8 +1,7 @@
 use reachtube_recordings::Run;
-use reachtube_robot::Robot;
 use serde::{Deserialize, Serialize};
 
-/// What friction of a robot may depend on in one run.
+/// What the drive of a system may depend on in one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Condition {
@@ -23,19 +22,5 @@ impl Condition {
     #[must_use]
     pub(crate) fn first() -> Self {
         Self { place: 1, temperatures: None }
-    }
-
-    /// Returns the robot as warm as it is in this condition; `None` if its friction does not
-    /// change. A law of temperature without a recorded temperature keeps its reference.
-    #[must_use]
-    pub(crate) fn warm(&self, robot: &Robot) -> Option<Robot> {
-        if robot.warms_by().is_empty() {
-            return None;
-        }
-        let warm = robot.at_run(self.place as f64);
-        Some(match &self.temperatures {
-            Some(temperatures) => warm.at_temperature(temperatures),
-            None => warm,
-        })
     }
 }

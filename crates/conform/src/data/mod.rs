@@ -2,7 +2,6 @@
 
 pub(crate) mod case;
 pub(crate) mod condition;
-pub(crate) mod correction;
 pub(crate) mod envelope;
 pub(crate) mod fold;
 pub(crate) mod input;
@@ -26,9 +25,9 @@ pub(crate) mod summary;
 pub(crate) mod totals;
 pub(crate) mod tree;
 
+pub use crate::arm::{InputCorrection, JointCorrection};
 pub use case::Case;
 pub use condition::Condition;
-pub use correction::{InputCorrection, JointCorrection};
 pub use envelope::Envelope;
 pub use input::RunInput;
 pub use sensor_noise::SensorNoise;

@@ -1,7 +1,6 @@
 //! What a user should know about recordings, in words.
 
 use reachtube_recordings::{State, copies_note};
-use reachtube_robot::friction::WarmingBy;
 
 use crate::data::origin::Origin;
 use crate::data::recordings::Recordings;
@@ -73,7 +72,7 @@ fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
             "suite {}: {} leaves the operating box at sample {k}. The model error has no proved \
              bound outside the box; there it is covered only by these recordings",
             suite.entry.name,
-            State::from_index(i, setup.robot.joint_count())
+            State::from_index(i, setup.dynamics.inputs())
         ))
     };
     recordings.suites.iter().filter_map(leaves).collect()
@@ -81,12 +80,9 @@ fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
 
 /// Says where friction depends on a temperature that a recording does not have.
 fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
-    let is_fitted =
-        setup.correction.as_ref().is_some_and(|known| known.reference_temperatures.is_some());
-    let by_temperature = is_fitted || setup.robot.warms_by().contains(&WarmingBy::Temperature);
     let with: usize = recordings.suites.iter().map(|s| s.totals.with_temperature()).sum();
     let without = recordings.run_count() - with;
-    (by_temperature && without > 0).then(|| {
+    (setup.drive.needs_temperatures() && without > 0).then(|| {
         format!(
             "friction of the robot depends on temperature, and {without} of the {} recordings \
              have no columns temp1 to tempn; they are taken at the reference temperature",

@@ -4,7 +4,6 @@ use std::sync::{Arc, OnceLock};
 
 use reachtube_reach::{Nonlinear, System};
 use reachtube_recordings::{Run, RunEntry, RunSource, State};
-use reachtube_robot::{Robot, RobotDescription};
 
 use crate::data::case::Case;
 use crate::data::kept::KeptRuns;
@@ -82,8 +81,8 @@ pub(crate) struct Read {
     pub recordings: Recordings,
     pub kept: Arc<HashMap<usize, Run>>,
     pub sensor_noise: SensorNoise,
-    /// The robot whose inputs the suites have.
-    pub robot: RobotDescription,
+    /// The key of the inputs that the suites have.
+    pub input_key: String,
 }
 
 impl Problem {
@@ -100,14 +99,14 @@ impl Problem {
         keep: Keep,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let Setup { robot, settings, .. } = &setup;
-        settings.validate(robot.joint_count())?;
+        let Setup { drive, dynamics, settings, .. } = &setup;
+        settings.validate(dynamics.inputs())?;
         let kept = KeptRuns::default();
         let reader = SuiteReader {
             source: source.as_ref(),
             options: read_options(&setup),
-            robot,
-            torque: settings.torque,
+            drive: &**drive,
+            shape: Shape { states: dynamics.states(), inputs: dynamics.inputs() },
             nominal: settings.nominal,
             nominal_starts: &setup.nominal_starts,
             kept: &kept,
@@ -128,8 +127,8 @@ impl Problem {
         let notes = recording_notes(&setup, &origin, &recordings);
         recordings.notes.extend(notes);
         let sensor_noise = sensor_noise(&setup, &recordings);
-        let (robot, kept) = (setup.robot.description().clone(), Arc::new(kept));
-        Self::of(setup, Arc::new(Read { origin, recordings, kept, sensor_noise, robot }))
+        let (input_key, kept) = (setup.drive.input_key(None), Arc::new(kept));
+        Self::of(setup, Arc::new(Read { origin, recordings, kept, sensor_noise, input_key }))
     }
 
     /// Returns the problem of another model and other settings with the same recordings, which are
@@ -145,16 +144,10 @@ impl Problem {
         Self { setup, read, grids, cases, deviations }
     }
 
-    /// Returns the setup: robot, model, settings.
+    /// Returns the setup: drive, model, settings.
     #[must_use]
     pub fn setup(&self) -> &Setup {
         &self.setup
-    }
-
-    /// Returns the robot.
-    #[must_use]
-    pub fn robot(&self) -> &Robot {
-        &self.setup.robot
     }
 
     /// Returns the model.
@@ -193,12 +186,12 @@ impl Problem {
     /// Returns the number of joints n.
     #[must_use]
     pub fn joints(&self) -> usize {
-        self.setup.robot.joint_count()
+        self.setup.dynamics.inputs()
     }
 
     /// Returns the number of states and inputs of the model: 2n and n.
     pub(crate) fn shape(&self) -> Shape {
-        Shape { states: 2 * self.joints(), inputs: self.joints() }
+        Shape { states: self.dynamics().states(), inputs: self.dynamics().inputs() }
     }
 
     /// Returns the source's entry of run `index`.
@@ -337,7 +330,7 @@ impl Problem {
 pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNoise {
     match &setup.settings.sensor_noise {
         Some(radius) => SensorNoise::given(radius.clone()),
-        None => SensorNoise::estimate(recordings, setup.robot.joint_count()),
+        None => SensorNoise::estimate(recordings, setup.dynamics.inputs()),
     }
 }
 
@@ -350,7 +343,7 @@ fn check_starts(setup: &Setup, source: &dyn RunSource, recordings: &Recordings) 
             let [low, high] = side(operating_box, i);
             if !(low..=high).contains(&value) {
                 let file = source.runs()[run.index].file.clone();
-                let state = State::from_index(i, setup.robot.joint_count());
+                let state = State::from_index(i, setup.dynamics.inputs());
                 return Err(Error::StartsOutsideBox { file, state, value, low, high });
             }
         }

@@ -1,87 +1,223 @@
+use std::any::Any;
 use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::path::Path;
+use std::sync::Arc;
 
-use reachtube_abstraction::{OperatingBox, PolynomialModel};
+use reachtube_abstraction::OperatingBox;
 use reachtube_reach::System;
-use reachtube_recordings::{GapLimit, ReadOptions};
-use reachtube_robot::Robot;
+use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run};
 
-use crate::arm::system::{system, system_of};
+use crate::data::case::Case;
 use crate::data::condition::Condition;
-use crate::data::correction::InputCorrection;
+use crate::data::input::RunInput;
 use crate::data::notion::Notion;
-use crate::data::settings::{Equations, Settings};
-use crate::error::{Error, Result};
+use crate::data::settings::Settings;
+use crate::error::Result;
+use crate::fit::group::Group;
+use crate::fit::record::FittedParameter;
 
-/// What decides a conformance besides the recordings: the robot, its model and the settings.
-///
-/// The robot names the joints, turns recorded torques into inputs and is written into the model
-/// file; all that follows the reading uses only the model.
+/// What decides a conformance besides the recordings: what drives a system along them, the system
+/// and the settings.
 #[derive(Debug, Clone)]
 pub struct Setup {
-    /// The robot.
-    pub(crate) robot: Robot,
-    /// The model of its motion.
+    /// What turns recordings into inputs of the system.
+    pub(crate) drive: Arc<dyn Drive>,
+    /// The model of the motion.
     pub(crate) dynamics: System,
     /// The settings.
     pub(crate) settings: Settings,
-    /// The nominal initial states of suites by their name, 2n each, where they are known. Any
-    /// other suite starts at the mean of the recordings at hand.
+    /// The nominal initial states of suites by their name, N each, where they are known. Any other
+    /// suite starts at the mean of the recordings at hand.
     pub(crate) nominal_starts: BTreeMap<String, Vec<f64>>,
-    /// What is taken off the recorded inputs along the nominal motions, where anything is.
-    pub(crate) correction: Option<InputCorrection>,
-    /// The condition that friction is taken in, whatever a run's condition is; `None` if each run
+    /// The condition that the drive is taken in, whatever a run's condition is; `None` if each run
     /// has its own.
     pub(crate) condition: Option<Condition>,
 }
 
+/// What turns recordings into inputs of a system.
+///
+/// The inputs of a recording are computed when it is read. What else is taken off them depends on
+/// the nominal motion: a [`Compensation`] evaluates it along that motion.
+pub(crate) trait Drive: Debug + Send + Sync {
+    /// Returns the sample times of a recording and the input along it, in a condition if one is
+    /// given.
+    ///
+    /// # Errors
+    ///
+    /// Defects of units and times, under the name `path`.
+    fn input(
+        &self,
+        path: &Path,
+        run: &Run,
+        at: Option<&Condition>,
+    ) -> Result<RunInput, Vec<Defect>>;
+
+    /// Returns a text that is the same for two drives, or conditions, if and only if they give
+    /// every recording the same input. Inputs that were computed under another key are computed
+    /// again.
+    fn input_key(&self, at: Option<&Condition>) -> String;
+
+    /// Returns whether the input depends on the condition of the run.
+    fn input_differs_by_run(&self) -> bool;
+
+    /// Returns whether runs that share their input may differ in what is compensated.
+    fn compensation_differs_by_run(&self) -> bool;
+
+    /// Returns what is taken off the input along nominal motions of `system` in a condition; `None`
+    /// if nothing is. `near` is what compensations near the same motion share.
+    ///
+    /// # Errors
+    ///
+    /// A system that does not fit.
+    fn compensation(
+        &self,
+        system: &System,
+        at: &Condition,
+        near: Option<&Near>,
+    ) -> Result<Option<Box<dyn Compensation>>>;
+
+    /// Returns what compensations near a motion (samples x N) share, to first order; `None` if they
+    /// share nothing.
+    fn near(&self, motion: &[f64]) -> Option<Near>;
+
+    /// Returns, for each input, the sum of the squares of what is wrong with its prediction along a
+    /// case, and the number of samples.
+    ///
+    /// # Errors
+    ///
+    /// When the compensation does not fit.
+    fn input_error(&self, case: &Case) -> Result<(Vec<f64>, usize)>;
+
+    /// Returns whether a fit has chosen its parameters.
+    fn is_fitted(&self) -> bool;
+
+    /// Returns the SHA-256 of the recordings that its parameters were identified from.
+    fn seen(&self) -> &[String];
+
+    /// Returns whether it depends on temperatures.
+    fn needs_temperatures(&self) -> bool;
+
+    /// Returns a text that says all that the inputs and compensations depend on.
+    fn identity(&self) -> String;
+
+    /// Refuses a fit of groups of parameters that cannot be fitted.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fit`](crate::Error::Fit).
+    fn check_fit(&self, groups: &[Group]) -> Result<()>;
+
+    /// Returns the setup with the linear model that steers a fit.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be made.
+    fn linear(&self, setup: &Setup) -> Result<Setup>;
+
+    /// Returns the parameters of the drive and the system that a fit moves.
+    fn parameters(&self, setup: &Setup, asked: &Asked) -> Box<dyn Parameters>;
+
+    /// Returns the type that implements it.
+    fn any(&self) -> &dyn Any;
+}
+
+/// What is taken off the inputs along one nominal motion.
+pub(crate) trait Compensation: Debug + Send + Sync {
+    /// Takes it off the input `u` (m) of sample `k`, where the nominal state is `x` (N).
+    fn apply(&mut self, k: usize, x: &[f64], u: &mut [f64]);
+}
+
+/// What compensations near one motion share.
+pub(crate) type Near = Arc<dyn Any + Send + Sync>;
+
+/// What a fit asks parameters for.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Asked<'a> {
+    /// The groups of parameters.
+    pub groups: &'a [Group],
+    /// The lowest and the highest recorded value of each state, N.
+    pub bounds: Vec<[f64; 2]>,
+    /// Whether the model that the parameters are for is not linear.
+    pub is_nonlinear: bool,
+    /// The mean temperatures of the recordings, where all of them have some.
+    pub temperatures: Option<Vec<f64>>,
+}
+
+/// The parameters of a fit, and the model that they give. The number 0 of a parameter stands for
+/// its identified value.
+pub(crate) trait Parameters: Debug + Send + Sync {
+    /// Returns the parameters.
+    fn list(&self) -> &[FreeParameter];
+
+    /// Returns the identified model.
+    fn setup(&self) -> &Setup;
+
+    /// Returns the model with these numbers, one per parameter.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be made.
+    fn apply(&self, numbers: &[f64]) -> Result<Setup>;
+
+    /// Refuses a model that `apply` made and that is impossible.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with it.
+    fn check(&self, setup: &Setup) -> Result<()>;
+
+    /// Returns no parameters of the same model.
+    fn none(&self) -> Box<dyn Parameters>;
+
+    /// Returns the numbers that a fit starts from.
+    fn start(&self) -> Vec<f64>;
+
+    /// Returns conditions on the numbers, linearised about `numbers`: the sum of the entries
+    /// (parameter, factor) is at most the bound.
+    fn conditions(&self, numbers: &[f64]) -> Vec<(Vec<(usize, f64)>, f64)>;
+
+    /// Returns whether compensations near a motion share something.
+    fn has_near(&self) -> bool;
+
+    /// Returns the parameters at `numbers`, for people.
+    fn describe(&self, numbers: &[f64]) -> Vec<FittedParameter>;
+}
+
+/// One number that a fit moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FreeParameter {
+    /// Its group.
+    pub group: Group,
+    /// Its kind: parameters of a kind are moved together first.
+    pub kind: u8,
+    /// The lowest and the highest number allowed.
+    pub bounds: [f64; 2],
+    /// Whether it changes A and B, and not only the nominal motions.
+    pub changes_system: bool,
+}
+
+impl dyn Parameters + '_ {
+    /// Returns the number of parameters.
+    pub(crate) fn len(&self) -> usize {
+        self.list().len()
+    }
+
+    /// Returns the parameters that are in none of the groups `held`.
+    pub(crate) fn except(&self, held: &[Group]) -> Vec<usize> {
+        let list = self.list().iter().enumerate();
+        list.filter(|(_, own)| !held.contains(&own.group)).map(|(p, _)| p).collect()
+    }
+
+    /// Returns the groups that have parameters.
+    pub(crate) fn groups(&self) -> Vec<Group> {
+        let has = |group: &Group| self.list().iter().any(|own| own.group == *group);
+        Group::ALL.into_iter().filter(has).collect()
+    }
+}
+
 impl Setup {
-    /// Makes the model of `robot` that `settings` ask for.
-    ///
-    /// # Errors
-    ///
-    /// Settings that do not fit the robot, a robot that is not physical at the expansion point.
-    pub fn new(robot: Robot, settings: Settings) -> Result<Self> {
-        settings.validate(robot.joint_count())?;
-        let dynamics = system(&robot, &settings)?;
-        Self::of(robot, dynamics, settings)
-    }
-
-    /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
-    /// operating box.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unbounded`] when the model's error was found to have no bound over its box, and
-    /// settings that do not fit.
-    pub(crate) fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
-        let settings = settings.with_abstraction(&model)?;
-        settings.validate(model.joints())?;
-        let robot = Robot::from_description(model.robot())?;
-        let dynamics = system_of(model, settings.method);
-        Self::of(robot, dynamics, settings)
-    }
-
-    /// Takes a model of the motion of `robot`.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Equations`] for the robot's own equations about a model that is not linear.
-    pub fn of(robot: Robot, dynamics: System, settings: Settings) -> Result<Self> {
-        if settings.equations == Equations::Robot && dynamics.linear_system().is_none() {
-            return Err(Error::Equations);
-        }
-        let nominal_starts = BTreeMap::new();
-        let (correction, condition) = (None, None);
-        Ok(Self { robot, dynamics, settings, nominal_starts, correction, condition })
-    }
-
-    /// Returns the robot.
-    #[must_use]
-    pub fn robot(&self) -> &Robot {
-        &self.robot
-    }
-
-    /// Returns the model of its motion.
+    /// Returns the model of the motion.
     #[must_use]
     pub fn dynamics(&self) -> &System {
         &self.dynamics
@@ -109,18 +245,15 @@ impl Setup {
         self
     }
 
-    /// Returns whether the model's input is the recorded one, with nothing taken off it along the
-    /// nominal motion.
-    pub(crate) fn is_recorded_input(&self) -> bool {
-        self.correction.is_none()
-            && self.robot.warms_by().is_empty()
-            && self.settings.equations == Equations::Model
+    /// Returns whether inputs or compensations depend on the condition of the run.
+    pub(crate) fn differs_by_run(&self) -> bool {
+        self.drive.input_differs_by_run() || self.drive.compensation_differs_by_run()
     }
 }
 
 pub(crate) fn read_options(setup: &Setup) -> ReadOptions {
     let Settings { gap_limit, until, .. } = setup.settings;
-    ReadOptions { joints: Some(setup.robot.joint_count()), gap_limit, until }
+    ReadOptions { joints: Some(setup.dynamics.inputs()), gap_limit, until }
 }
 
 /// The side of the box for state `i`, q then q̇.

@@ -19,7 +19,7 @@ impl Problem {
             origin: self.read.origin.clone(),
             kept: Arc::clone(&self.read.kept),
             sensor_noise: sensor_noise(self.setup(), &recordings),
-            robot: self.read.robot.clone(),
+            input_key: self.read.input_key.clone(),
             recordings,
         };
         Self::of(self.setup().clone(), Arc::new(read))

@@ -4,13 +4,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use rayon::prelude::*;
 use reachtube_reach::TimeGrid;
-use reachtube_recordings::{Defect, ReadOptions, Run, RunSource, SuiteEntry, Torque};
-use reachtube_robot::Robot;
+use reachtube_recordings::{Defect, ReadOptions, Run, RunSource, SuiteEntry};
 
 use crate::data::envelope::Envelope;
 use crate::data::input::{RunInput, SharedInput};
 use crate::data::kept::KeptRuns;
 use crate::data::settings::NominalStart;
+use crate::data::setup::Drive;
+use crate::data::shape::Shape;
 use crate::data::summary::{RunSummary, SAMPLE, sampled};
 use crate::data::totals::Totals;
 use crate::error::{Error, Result as AnyResult};
@@ -25,7 +26,7 @@ pub struct Suite {
     pub runs: Vec<RunSummary>,
     /// Totals of all runs.
     pub(crate) totals: Totals,
-    /// The nominal initial state, 2n: the one that was given for the suite's name, or the mean of
+    /// The nominal initial state, N: the one that was given for the suite's name, or the mean of
     /// the runs' first states, rounded to nearest.
     pub nominal_start: Vec<f64>,
     /// The one input of all runs (Definition 2), where they share it and their nominal start: the
@@ -80,8 +81,8 @@ impl Suite {
 pub(super) struct SuiteReader<'a> {
     pub source: &'a dyn RunSource,
     pub options: ReadOptions,
-    pub robot: &'a Robot,
-    pub torque: Torque,
+    pub drive: &'a dyn Drive,
+    pub shape: Shape,
     pub nominal: NominalStart,
     pub nominal_starts: &'a BTreeMap<String, Vec<f64>>,
     pub kept: &'a KeptRuns,
@@ -101,7 +102,7 @@ impl SuiteReader<'_> {
         entry: &SuiteEntry,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<Suite, Vec<Defect>> {
-        let n = self.robot.joint_count();
+        let shape = self.shape;
         let (done, grids) = (AtomicUsize::new(0), SharedGrids::default());
         let take = |mut part: Part, (place, &index): (usize, &usize)| {
             match self.read_run(index) {
@@ -115,14 +116,14 @@ impl SuiteReader<'_> {
             progress(done.fetch_add(1, Ordering::Relaxed) + 1);
             part
         };
-        let parts = entry.runs.par_iter().enumerate().fold(|| Part::new(n), take);
-        let whole = parts.reduce_with(|a, b| a.merge(b, n, self.kept));
-        self.suite(entry, whole.unwrap_or_else(|| Part::new(n)))
+        let parts = entry.runs.par_iter().enumerate().fold(|| Part::new(shape), take);
+        let whole = parts.reduce_with(|a, b| a.merge(b, shape, self.kept));
+        self.suite(entry, whole.unwrap_or_else(|| Part::new(shape)))
     }
 
     fn read_run(&self, index: usize) -> Result<(Run, RunInput), Vec<Defect>> {
         let run = self.source.read(index, &self.options)?;
-        let input = RunInput::new(&self.source.run_name(index), &run, self.robot, self.torque)?;
+        let input = self.drive.input(&self.source.run_name(index), &run, None)?;
         Ok((run, input))
     }
 
@@ -133,10 +134,9 @@ impl SuiteReader<'_> {
     /// Folds one run into `part`. A run is kept when the suite's runs are known to be cases of
     /// their own, or when it may turn out so: the first one, until a second shares its input.
     fn take(&self, part: &mut Part, index: usize, run: Run, input: RunInput) {
-        let n = run.joints;
         part.envelope.include(index as u32, &run.states);
         let is_first = part.is_empty;
-        part.share(Some(SharedInput { run: index as u32, input }), n);
+        part.share(Some(SharedInput { run: index as u32, input }), self.shape);
         if self.keep_all || self.nominal == NominalStart::Own || part.shared.is_none() {
             self.kept.keep(index, run);
         } else if is_first {
@@ -187,22 +187,22 @@ struct Part {
 }
 
 impl Part {
-    fn new(joints: usize) -> Self {
+    fn new(shape: Shape) -> Self {
         Self {
             runs: Vec::new(),
             shared: None,
             is_empty: true,
             first: None,
-            envelope: Envelope::new(2 * joints),
+            envelope: Envelope::new(shape.states),
             defects: Vec::new(),
         }
     }
 
-    fn share(&mut self, other: Option<SharedInput>, joints: usize) {
+    fn share(&mut self, other: Option<SharedInput>, shape: Shape) {
         self.shared = if self.is_empty {
             other
         } else {
-            self.shared.take().zip(other).and_then(|(a, b)| a.merge(b, joints))
+            self.shared.take().zip(other).and_then(|(a, b)| a.merge(b, shape.inputs))
         };
         self.is_empty = false;
     }
@@ -214,16 +214,16 @@ impl Part {
         }
     }
 
-    fn merge(mut self, other: Self, joints: usize, kept: &KeptRuns) -> Self {
+    fn merge(mut self, other: Self, shape: Shape, kept: &KeptRuns) -> Self {
         if self.is_empty {
             self.first = other.first;
         } else if !other.is_empty {
             let firsts = [self.first.take(), other.first];
-            self.share(other.shared.clone(), joints);
+            self.share(other.shared.clone(), shape);
             firsts.into_iter().for_each(|first| self.keep_if_own(first, kept));
         }
         if self.is_empty && !other.is_empty {
-            self.share(other.shared, joints);
+            self.share(other.shared, shape);
         }
         self.runs.extend(other.runs);
         self.defects.extend(other.defects);

@@ -5,17 +5,14 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use reachtube_reach::{Disturbance, TimeGrid};
 
-use crate::data::correction::InputCorrection;
 use crate::data::envelope::Envelope;
 use crate::data::settings::{Noise, Settings};
-use crate::data::setup::Setup;
+use crate::data::setup::{Near, Parameters, Setup};
 use crate::data::shape::Shape;
 use crate::data::side::Side;
 use crate::error::{Error, Result};
 use crate::fit::data::{Data, Track};
-use crate::fit::parameters::Parameters;
-use crate::nominal::loads::LoadsNear;
-use crate::nominal::motion::Corrected;
+use crate::nominal::motion::motion;
 use crate::nominal::steps::LinearSteps;
 use crate::program::block::Block;
 use crate::program::layout::Limits;
@@ -29,7 +26,7 @@ pub(crate) type StepRow = (usize, usize, usize, Side);
 /// What does not change during a fit.
 #[derive(Clone)]
 pub(crate) struct FitTask<'a> {
-    pub parameters: &'a Parameters<'a>,
+    pub parameters: &'a dyn Parameters,
     pub data: &'a Data,
     /// Every how many samples rows are taken.
     pub stride: usize,
@@ -113,8 +110,8 @@ impl FitTask<'_> {
         nominal.steps.iter().zip(&self.data.grids).map(of).collect()
     }
 
-    /// Returns the nominal motion of a track at every sample, samples x 2n; `loads` are the loads
-    /// of gravity near it, if they are known.
+    /// Returns the nominal motion of a track at every sample, samples x N; `near` is what
+    /// compensations near it share, if that is known.
     ///
     /// # Errors
     ///
@@ -123,14 +120,12 @@ impl FitTask<'_> {
         &self,
         NominalModel { setup, steps }: &NominalModel,
         track: usize,
-        loads: Option<&LoadsNear>,
+        near: Option<&Near>,
     ) -> Result<Vec<f64>> {
-        let none = InputCorrection::none(self.joints());
-        let correction = setup.correction.as_ref().unwrap_or(&none);
-        let (robot, dynamics, settings) = (&setup.robot, &setup.dynamics, self.settings);
+        let Setup { drive, dynamics, .. } = setup;
         let Track { case, grid, .. } = &self.data.tracks[track];
-        let corrected = Corrected { robot, dynamics, correction, settings, loads };
-        Ok(corrected.motion(case, Some(&steps[*grid]))?.states)
+        let compensation = drive.compensation(dynamics, &case.condition, near)?;
+        Ok(motion(dynamics, case, Some(&steps[*grid]), compensation)?.states)
     }
 
     /// Returns a motion at the samples that are rows.

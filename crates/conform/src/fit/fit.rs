@@ -1,18 +1,15 @@
 use rayon::prelude::*;
-use reachtube_abstraction::Abstraction;
 
-use crate::arm::system::system;
 use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
-use crate::data::settings::{Equations, Method, Weights};
-use crate::data::setup::Setup;
+use crate::data::settings::Weights;
+use crate::data::setup::{Asked, Parameters, Setup};
 use crate::error::{Error, Result};
 use crate::fit::data::{Data, EQUALLY_WARM};
 use crate::fit::evaluation::{FitTask, Smallest};
 use crate::fit::group::{FitSettings, Group};
-use crate::fit::parameters::{Parameters, Quantity};
 use crate::fit::pull::{PullChoice, choose};
-use crate::fit::record::{FitRecord, FittedParameter, GroupCost, TorquePrediction};
+use crate::fit::record::{FitRecord, GroupCost, TorquePrediction};
 use crate::fit::search::{FoundNumbers, SearchEffort, Wanted, size};
 use crate::next_motion::calibration::{calibrate, without_held_out};
 use crate::next_motion::left_out::LeftOutMotions;
@@ -56,7 +53,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let basis = Basis::new(problem, settings)?;
     let steering = basis.steering();
     let parameters = basis.parameters(steering.setup())?;
-    let fit = basis.task(&parameters, progress)?;
+    let fit = basis.task(&*parameters, progress)?;
     let choice = choose(&fit, &steering.limits_without_each(&basis.data), settings.pull)?;
     if settings.pull.is_none() && !choice.carries_over() {
         let (record, setup) = (not_taken(&fit, choice, steering)?, problem.setup().clone());
@@ -94,7 +91,7 @@ pub(crate) fn fitted_setup(
     };
     let basis = Basis::new(problem, settings)?;
     let parameters = basis.parameters(basis.steering().setup())?;
-    let fit = basis.task(&parameters, progress)?;
+    let fit = basis.task(&*parameters, progress)?;
     let found = search(&fit, pull, &[])?;
     Ok(basis.with_numbers(&fit, problem, &found.numbers)?.setup().clone())
 }
@@ -107,8 +104,8 @@ struct Basis<'a> {
     /// the motions that calibrate.
     other: Option<Problem>,
     data: Data,
-    /// The highest speed of the friction of each joint, as [`Parameters::new`] needs it.
-    speeds: Vec<f64>,
+    /// The lowest and the highest recorded value of each state, N.
+    bounds: Vec<[f64; 2]>,
 }
 
 impl<'a> Basis<'a> {
@@ -118,7 +115,7 @@ impl<'a> Basis<'a> {
         let mut other = without_held_out(given)?;
         let is_held_out = other.is_some();
         if given.dynamics().linear_system().is_none() {
-            let linear = linear_setup(given.setup())?;
+            let linear = given.setup().drive.linear(given.setup())?;
             other = Some(other.as_ref().unwrap_or(given).with_setup(linear));
         }
         let steering = other.as_ref().unwrap_or(given);
@@ -129,18 +126,24 @@ impl<'a> Basis<'a> {
         if groups.contains(&Group::WarmUp) && data.are_equally_warm() {
             return Err(Error::Fit(EQUALLY_WARM.into()));
         }
-        let speeds = speeds_of_friction(given, steering, groups);
-        Ok(Self { given, groups, other, data, speeds })
+        let states = 0..steering.shape().states;
+        let bounds = states.map(|i| steering.recorded_bounds(i)).collect();
+        Ok(Self { given, groups, other, data, bounds })
     }
 
     fn steering(&self) -> &Problem {
         self.other.as_ref().unwrap_or(self.given)
     }
 
-    /// Returns the parameters of a setup's robot.
-    fn parameters<'b>(&self, setup: &'b Setup) -> Result<Parameters<'b>> {
-        let temperatures = self.data.mean_temperatures();
-        let parameters = Parameters::new(setup, self.groups, &self.speeds, temperatures);
+    /// Returns the parameters of a setup.
+    fn parameters(&self, setup: &Setup) -> Result<Box<dyn Parameters>> {
+        let asked = Asked {
+            groups: self.groups,
+            bounds: self.bounds.clone(),
+            is_nonlinear: self.given.dynamics().linear_system().is_none(),
+            temperatures: self.data.mean_temperatures(),
+        };
+        let parameters = setup.drive.parameters(setup, &asked);
         if parameters.len() == 0 {
             return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
         }
@@ -149,7 +152,7 @@ impl<'a> Basis<'a> {
 
     fn task<'b>(
         &'b self,
-        parameters: &'b Parameters<'b>,
+        parameters: &'b dyn Parameters,
         progress: &'b dyn Progress,
     ) -> Result<FitTask<'b>> {
         let (steering, data) = (self.steering(), &self.data);
@@ -169,28 +172,16 @@ impl<'a> Basis<'a> {
 
     /// Returns a problem whose model has the numbers that were found.
     fn with_numbers(&self, fit: &FitTask, problem: &Problem, numbers: &[f64]) -> Result<Problem> {
-        let mut setup = self.parameters(problem.setup())?.apply(numbers)?;
+        let parameters = self.parameters(problem.setup())?;
+        let mut setup = parameters.apply(numbers)?;
         let refused = |error| Error::Fit(format!("{error}; give a larger weight to the pull"));
-        setup.robot.check_physical().map_err(refused)?;
+        parameters.check(&setup).map_err(refused)?;
         if setup.settings.weights == Weights::Spread {
             setup.settings.weights = Weights::Given(fit.weights.clone());
         }
         Ok(problem.with_setup(setup))
     }
 }
-
-/// Returns the highest recorded speed of each joint, rad/s; none for a linear model whose friction
-/// is linear too: it cannot fall with speed.
-fn speeds_of_friction(problem: &Problem, steering: &Problem, groups: &[Group]) -> Vec<f64> {
-    let is_cubic = problem.dynamics().linear_system().is_none()
-        || problem.settings().equations == Equations::Robot
-        || groups.contains(&Group::Cubic);
-    let joints = if is_cubic { steering.robot().joint_count() } else { 0 };
-    (0..joints).map(|joint| steering.highest_speed(joint)).collect()
-}
-
-/// A kind of parameters, which all joints have.
-type Kind = std::mem::Discriminant<Quantity>;
 
 /// Searches with a pull, in parts of the identified model's cost, and without the groups that were
 /// dropped.
@@ -199,8 +190,8 @@ type Kind = std::mem::Discriminant<Quantity>;
 /// and one for each kind of them first the others. The best answer counts, with every sample.
 fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
     let all = fit.parameters.except(dropped);
-    let kind = |p: usize| std::mem::discriminant(&fit.parameters.list[p].quantity);
-    let mut kinds: Vec<Kind> = Vec::new();
+    let kind = |p: usize| fit.parameters.list()[p].kind;
+    let mut kinds: Vec<u8> = Vec::new();
     for kind in all.iter().map(|p| kind(*p)) {
         if !kinds.contains(&kind) {
             kinds.push(kind);
@@ -210,7 +201,7 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
     let every_sample = FitTask { stride: 1, ..fit.clone() };
     let [pull, whole_pull] = [pull * fit.cost(&start)?, pull * every_sample.cost(&start)?];
     let wanted = |free, effort| Wanted { left_out: None, pull, free, effort };
-    let of_held = |held: Option<Kind>| {
+    let of_held = |held: Option<u8>| {
         let first = match held {
             Some(held) => {
                 let others = all.iter().copied().filter(|p| held != kind(*p)).collect();
@@ -223,7 +214,7 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
         Ok(found)
     };
     let held = kinds.iter().map(|kind| Some(*kind)).filter(|_| kinds.len() > 1);
-    let starts: Vec<Option<Kind>> = std::iter::once(None).chain(held).collect();
+    let starts: Vec<Option<u8>> = std::iter::once(None).chain(held).collect();
     let answers: Vec<Result<FoundNumbers>> = starts.into_par_iter().map(of_held).collect();
     fit.progress.go_on()?;
     let value = |answer: &Result<FoundNumbers>| answer.as_ref().map_or(f64::INFINITY, |a| a.value);
@@ -288,15 +279,6 @@ fn calibrated_cost(problem: &Problem) -> Option<f64> {
     found?.ok().map(|(found, _)| found.cost)
 }
 
-/// The linear model of the same robot about the same point.
-fn linear_setup(setup: &Setup) -> Result<Setup> {
-    let mut linear = setup.clone();
-    linear.settings.abstraction = Abstraction::default();
-    linear.settings.method = Method::Program;
-    linear.dynamics = system(&linear.robot, &linear.settings)?;
-    Ok(linear)
-}
-
 /// Returns the record of a fit that was not taken.
 fn not_taken(fit: &FitTask, choice: PullChoice, steering: &Problem) -> Result<FitRecord> {
     let identified = smallest(steering)?;
@@ -355,21 +337,43 @@ fn record(
         identified_left_out: choice.identified,
         identified_calibrated_cost: None,
         pulls: choice.tried,
-        parameters: FittedParameter::of_fit(fit, &numbers, setup),
+        parameters: fit.parameters.describe(&numbers),
         torque: torque
             .map(|(j, (identified, fitted))| TorquePrediction { joint: j + 1, identified, fitted })
             .collect(),
     })
 }
 
+impl FitSettings {
+    /// Refuses what cannot be fitted, whatever the recordings are.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fit`] for a weight of the pull that is no part, for a model whose error was
+    /// bounded, and for groups of parameters that the setup cannot fit.
+    pub fn check(&self, setup: &Setup) -> Result<()> {
+        if let Some(pull) = self.pull.filter(|pull| !(0.0..=1.0).contains(pull)) {
+            let why = format!("the weight of the pull is {pull}; give a number from 0 to 1");
+            return Err(Error::Fit(why));
+        }
+        // The fit replaces the robot.
+        if setup.settings.operating_box.is_some() {
+            let why = "the error of the model was bounded for the identified robot, and does not \
+                       hold for another one; fit without the file of the abstraction";
+            return Err(Error::Fit(why.into()));
+        }
+        setup.drive.check_fit(&self.groups)
+    }
+}
+
 impl FitTask<'_> {
     /// Returns `numbers`, in which a group has the numbers that a fit starts from.
     pub(crate) fn without(&self, group: Group, numbers: &[f64]) -> Vec<f64> {
         let start = self.parameters.start();
-        let parameters = self.parameters.list.iter().zip(numbers.iter().zip(&start));
+        let parameters = self.parameters.list().iter().zip(numbers.iter().zip(&start));
         let kept = parameters.map(
             |(parameter, (x, start))| {
-                if parameter.quantity.group() == group { *start } else { *x }
+                if parameter.group == group { *start } else { *x }
             },
         );
         kept.collect()

@@ -1,8 +1,4 @@
-use reachtube_recordings::Torque;
 use serde::{Deserialize, Serialize};
-
-use crate::data::setup::Setup;
-use crate::error::{Error, Result};
 
 /// A group of parameters of the nominal model that a fit may move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -57,35 +53,4 @@ pub struct FitSettings {
     /// it is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pull: Option<f64>,
-}
-
-impl FitSettings {
-    /// Refuses what cannot be fitted, whatever the recordings are.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Fit`] for a weight of the pull that is no part, for a model whose error was
-    /// bounded, and for friction and link torques.
-    pub fn check(&self, setup: &Setup) -> Result<()> {
-        let refused = |why: &str| Err(Error::Fit(why.into()));
-        if let Some(pull) = self.pull.filter(|pull| !(0.0..=1.0).contains(pull)) {
-            return refused(&format!(
-                "the weight of the pull is {pull}; give a number from 0 to 1"
-            ));
-        }
-        // The fit replaces the robot.
-        if setup.settings.operating_box.is_some() {
-            return refused(
-                "the error of the model was bounded for the identified robot, and does not hold \
-                 for another one; fit without the file of the abstraction",
-            );
-        }
-        let is_friction = |group: &Group| {
-            matches!(group, Group::Viscous | Group::Cubic | Group::Coulomb | Group::WarmUp)
-        };
-        if setup.settings.torque == Torque::Link && self.groups.iter().any(is_friction) {
-            return refused("there is no friction in link torques; fit inertia or payload");
-        }
-        Ok(())
-    }
 }

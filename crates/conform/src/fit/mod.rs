@@ -12,10 +12,8 @@ pub(crate) mod evaluation;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 pub(crate) mod fit;
 pub(crate) mod group;
-pub(crate) mod parameters;
 pub(crate) mod pull;
 pub(crate) mod record;
-pub(crate) mod rising;
 pub(crate) mod search;
 pub(crate) mod slopes;
 pub(crate) mod step;

@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use crate::data::setup::Parameters;
 use crate::error::{Error, Result};
 use crate::fit::evaluation::FitTask;
 use crate::fit::group::Group;
-use crate::fit::parameters::Parameters;
 use crate::fit::record::{PullCost, UnseenMotion};
 use crate::fit::search::{SearchEffort, Wanted};
 use crate::fit::unseen::Unseen;
@@ -38,7 +38,7 @@ pub(crate) struct PullChoice {
 
 impl PullChoice {
     /// Returns the groups that are fitted.
-    pub(crate) fn groups(&self, parameters: &Parameters) -> Vec<Group> {
+    pub(crate) fn groups(&self, parameters: &dyn Parameters) -> Vec<Group> {
         let all = parameters.groups().into_iter();
         all.filter(|group| !self.dropped.contains(group)).collect()
     }
@@ -142,9 +142,9 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
     let started =
         limits.par_iter().enumerate().map(|(motion, limits)| Fold::new(fit, motion, limits));
     let folds: Vec<Fold> = started.collect::<Result<_>>()?;
-    let identified = Parameters::new(fit.parameters.setup(), &[], &[], None);
+    let identified = fit.parameters.none();
     let identified = folds.par_iter().map(|Fold { unseen: Unseen { whole, motion }, .. }| {
-        let whole = FitTask { parameters: &identified, ..whole.clone() };
+        let whole = FitTask { parameters: &*identified, ..whole.clone() };
         Ok(Unseen { whole, motion: *motion }.compare(&[])?.0)
     });
     let identified = identified.collect::<Result<_>>()?;
@@ -181,7 +181,7 @@ pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Re
 /// Returns in words how long a fit may still take after its first round of fits without each
 /// motion: a round for each other weight and each group that may be dropped, and about two for the
 /// answer.
-fn time_left(parameters: &Parameters, round: Duration) -> String {
+fn time_left(parameters: &dyn Parameters, round: Duration) -> String {
     let groups = parameters.groups().len();
     let rounds = PULLS.len() - 1 + (groups * (groups + 1) / 2 - 1) + 2;
     let seconds = (rounds as f64 * round.as_secs_f64()).ceil();

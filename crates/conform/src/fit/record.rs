@@ -1,9 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::data::setup::Setup;
-use crate::fit::evaluation::FitTask;
 use crate::fit::group::Group;
-use crate::fit::parameters::{FreeParameter, Quantity};
 
 /// Number of standard errors by which a fit may move a value that is still a measurement.
 pub(crate) const MOST_ERRORS: f64 = 3.0;
@@ -230,35 +227,6 @@ pub struct FittedParameter {
 }
 
 impl FittedParameter {
-    /// Lists the parameters of a fit at `numbers`.
-    pub(crate) fn of_fit(fit: &FitTask, numbers: &[f64], setup: &Setup) -> Vec<Self> {
-        let of = |p: usize| {
-            let FreeParameter { quantity, joint, .. } = fit.parameters.list[p];
-            let kind = setup.robot.joints()[joint].kind;
-            let (identified, fitted, factor) = fit.parameters.values(p, numbers[p]);
-            let of_velocity =
-                |power| format!("{}/({}){power}", kind.force_unit(), kind.velocity_unit());
-            let by_temperature = fit.parameters.warms_by_temperature();
-            let (name, unit) = match quantity {
-                Quantity::MotorInertia => ("inertia at the motor", kind.inertia_unit().into()),
-                Quantity::Density => ("mass of the link", "kg".into()),
-                Quantity::Viscous => ("viscous friction", of_velocity("")),
-                Quantity::Cubic => ("cubic friction", of_velocity("³")),
-                Quantity::Coulomb(quadrants) => (coulomb_name(quadrants), kind.force_unit().into()),
-                Quantity::WarmUp if by_temperature => {
-                    ("viscous friction per K", of_velocity("") + "/K")
-                }
-                Quantity::WarmUp => ("viscous friction per unit of ln(run)", of_velocity("")),
-                Quantity::WarmUpCoulomb => ("part of Coulomb friction per K", "1/K".into()),
-                Quantity::Payload => ("payload", "kg".into()),
-            };
-            let (group, joint) = (quantity.group(), joint + 1);
-            let (name, standard_error) = (name.into(), fit.parameters.standard_error(p));
-            Self { group, name, joint, unit, identified, standard_error, fitted, factor }
-        };
-        (0..numbers.len()).map(of).collect()
-    }
-
     /// Returns whether the fit moved the value further than the recordings of the identification
     /// allow: it compensates for model error and is no measurement.
     #[must_use]
@@ -276,16 +244,6 @@ impl FittedParameter {
         }
         let size = self.identified.abs().max(self.fitted.abs()).max(1e-6);
         (self.fitted - self.identified).abs() > 5e-4 * size
-    }
-}
-
-fn coulomb_name(quadrants: [bool; 4]) -> &'static str {
-    match quadrants {
-        [true, false, false, false] => "Coulomb friction, driving forward",
-        [false, true, false, false] => "Coulomb friction, driving backward",
-        [false, false, true, false] => "Coulomb friction, braking backward",
-        [false, false, false, true] => "Coulomb friction, braking forward",
-        _ => "Coulomb friction",
     }
 }
 

@@ -169,7 +169,8 @@ impl Search<'_> {
 
     fn point(&self, numbers: Vec<f64>, rows: &mut Vec<RowIndex>) -> Result<Point> {
         if self.wanted.effort.is_physical {
-            self.fit.parameters.apply(&numbers)?.robot.check_physical()?;
+            let parameters = self.fit.parameters;
+            parameters.check(&parameters.apply(&numbers)?)?;
         }
         let model = self.fit.model(&numbers, &self.tracks)?;
         let smallest = self.fit.smallest_from(&model, &self.tracks, rows)?;

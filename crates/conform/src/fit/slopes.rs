@@ -6,7 +6,6 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::fit::evaluation::{FitModel, FitTask, NominalModel, Smallest};
-use crate::nominal::loads::LoadsNear;
 use crate::sets::UncertaintySets;
 
 /// The step of a difference, in the numbers of the parameters.
@@ -49,7 +48,7 @@ impl<'a> Slopes<'a> {
                 return Ok((None, None));
             }
             let moved = Moved::new(fit, numbers, p)?;
-            let changes = fit.parameters.changes_model(p);
+            let changes = fit.parameters.list()[p].changes_system;
             let reach = changes.then(|| moved.reach(fit, model, smallest));
             Ok((Some(moved), reach))
         };
@@ -67,14 +66,15 @@ impl<'a> Slopes<'a> {
     /// [`Error::RunsAway`](crate::Error::RunsAway).
     pub(crate) fn add(&mut self, tracks: &[usize]) -> Result<()> {
         let Self { fit, here: (here, model), moved, list } = self;
-        let has_loads = fit.parameters.needs_loads();
-        // All parameters share the loads of gravity along a track, to first order.
+        let has_near = fit.parameters.has_near();
+        // All parameters share what compensations near a track share, to first order.
         let of_track = |&t: &usize| -> Result<Vec<Vec<f64>>> {
-            let along = |motion: Vec<f64>| LoadsNear::along(&here.setup.robot, &motion);
-            let loads = has_loads.then(|| fit.motion(here, t, None).map(along)).transpose()?;
+            let along = |motion: Vec<f64>| here.setup.drive.near(&motion);
+            let near =
+                has_near.then(|| fit.motion(here, t, None).map(along)).transpose()?.flatten();
             let difference = |moved: &Option<Moved>| {
                 let Some(Moved { nominal, step }) = moved else { return Ok(Vec::new()) };
-                let rows = fit.rows_of(&fit.motion(nominal, t, loads.as_ref())?).into_iter();
+                let rows = fit.rows_of(&fit.motion(nominal, t, near.as_ref())?).into_iter();
                 Ok(rows.zip(&model.motions[t]).map(|(x, y)| (x - y) / step).collect())
             };
             moved.iter().map(difference).collect()
@@ -99,7 +99,7 @@ struct Moved {
 impl Moved {
     fn new(fit: &FitTask, numbers: &[f64], p: usize) -> Result<Self> {
         let mut moved = numbers.to_vec();
-        let up = numbers[p] + DIFFERENCE <= fit.parameters.list[p].bounds[1];
+        let up = numbers[p] + DIFFERENCE <= fit.parameters.list()[p].bounds[1];
         let step = if up { DIFFERENCE } else { -DIFFERENCE };
         moved[p] += step;
         Ok(Self { nominal: fit.nominal(&moved)?, step })

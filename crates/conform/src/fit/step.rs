@@ -219,7 +219,7 @@ impl StepProgram<'_> {
         }
         for (at, &p) in free.iter().enumerate() {
             let (number, size) = (sets + at, sets + count + at);
-            let [low, high] = self.fit.parameters.list[p].bounds;
+            let [low, high] = self.fit.parameters.list()[p].bounds;
             matrix.row([(number, 1.0), (size, -1.0)]);
             matrix.row([(number, -1.0), (size, -1.0)]);
             matrix.row([(number, 1.0)]);
@@ -227,7 +227,7 @@ impl StepProgram<'_> {
             let (top, bottom) = (self.numbers[p] + self.trust, self.numbers[p] - self.trust);
             bounds.extend([0.0, 0.0, top.min(high), -bottom.max(low)]);
         }
-        self.keep_rising(sets, &mut matrix, &mut bounds);
+        self.keep_conditions(sets, &mut matrix, &mut bounds);
         let slopes = self.cost_slopes();
         let pull = self.pull.max(LEAST_PULL * total);
         let of_set = |(j, w): (usize, &f64)| {
@@ -245,10 +245,9 @@ impl StepProgram<'_> {
         Ok((unknowns, value * total - present + held))
     }
 
-    /// Keeps friction rising with speed; the numbers are the unknowns from `first` on.
-    fn keep_rising(&self, first: usize, matrix: &mut Triplets, bounds: &mut Vec<f64>) {
-        for condition in &self.fit.parameters.rising {
-            let (entries, mut bound) = condition.tangent(self.numbers);
+    /// Keeps the conditions of the parameters; the numbers are the unknowns from `first` on.
+    fn keep_conditions(&self, first: usize, matrix: &mut Triplets, bounds: &mut Vec<f64>) {
+        for (entries, mut bound) in self.fit.parameters.conditions(self.numbers) {
             let place = |p: usize| self.free.iter().position(|own| *own == p);
             let mut own = Vec::new();
             for (p, factor) in entries {

@@ -14,10 +14,10 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::arm::correction::InputCorrection;
 use crate::arm::system::polynomials;
 use crate::claim::verdict::Verdict;
 use crate::conformance::Conformance;
-use crate::data::correction::InputCorrection;
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
 use crate::data::sensor_noise::SensorNoise;
@@ -230,7 +230,7 @@ impl Model {
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),
             preparation: None,
-            correction: problem.setup().correction.clone(),
+            correction: problem.setup().arm().correction.clone(),
             any_run: found.any_run.clone(),
             fit: None,
             a: matrix(LinearSystem::a),

@@ -5,6 +5,7 @@ use reachtube_abstraction::{PolynomialModel, Records};
 use reachtube_reach::{Hyperrectangle, LinearSystem, System};
 use reachtube_robot::Robot;
 
+use crate::arm::arm::Arm;
 use crate::arm::system::{system, system_of};
 use crate::claim::verdict::SuiteVerdict;
 use crate::data::settings::{Settings, check_allowance};
@@ -88,14 +89,8 @@ impl Model {
         }
         let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
         let nominal_starts = self.data.suites.iter().filter_map(start).collect();
-        Ok(Setup {
-            robot,
-            dynamics,
-            settings: self.settings.clone(),
-            nominal_starts,
-            correction: self.correction.clone(),
-            condition: None,
-        })
+        let arm = Arm::new(robot, self.correction.clone(), &self.settings);
+        Ok(Setup { nominal_starts, ..Setup::of_arm(arm, dynamics, self.settings.clone()) })
     }
 
     /// Returns the model bit by bit as the file has it, or what speaks against it.

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use reachtube_recordings::{Sample, Torque};
 use reachtube_robot::Robot;
 
-use crate::data::input::SPAN;
+use crate::arm::input::SPAN;
 
 /// Holds samples back until the velocities after them are known, and adds J q̈ to the input from
 /// torques that were measured behind the gear.

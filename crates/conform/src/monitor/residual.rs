@@ -3,8 +3,8 @@
 use reachtube_recordings::{Sample, Torque};
 use reachtube_robot::{Robot, Workspace};
 
+use crate::arm::only_payload;
 use crate::error::Result;
-use crate::nominal::corrector::only_payload;
 
 /// Half the time over which accelerations are taken, s: a push of 50 ms shows whole.
 const HALF: f64 = 0.025;

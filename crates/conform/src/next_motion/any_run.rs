@@ -33,9 +33,7 @@ impl AnyRun {
     /// As [`conform`](crate::conform).
     pub(crate) fn new(problem: &Problem) -> Result<Option<Self>> {
         let setup = problem.setup();
-        let by_run = setup.correction.as_ref().is_some_and(|c| c.differs_by_run())
-            || !setup.robot.warms_by().is_empty();
-        if !by_run || setup.dynamics.linear_system().is_none() {
+        if !setup.differs_by_run() || setup.dynamics.linear_system().is_none() {
             return Ok(None);
         }
         let condition = middle(problem);

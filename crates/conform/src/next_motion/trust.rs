@@ -153,7 +153,7 @@ impl Trust {
             );
             return Self::unknown(count, basis);
         }
-        let seen = &problem.robot().description().identified_from;
+        let seen = problem.setup().drive.seen();
         let suites = problem.recordings().suites_among(seen);
         let seen = motions.among(suites.into_iter(), |motion| {
             calibration.gauges.iter().any(|gauge| gauge.motion == motion)
@@ -294,7 +294,7 @@ fn independent<'a>(recordings: &'a Recordings, calibration: &Calibration) -> [Ve
 fn unmet(problem: &Problem) -> Option<&'static str> {
     let settings = problem.settings();
     let is_limited = settings.are_limited_by_noise() && settings.sensor_noise.is_none();
-    let seen = &problem.robot().description().identified_from;
+    let seen = problem.setup().drive.seen();
     let is_seen = !problem.recordings().suites_among(seen).is_empty();
     let ends_alone = || Motions::new(problem.recordings()).longest_is_one(problem.recordings());
     if problem.dynamics().linear_system().is_none() {

@@ -3,21 +3,19 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use reachtube_recordings::Torque;
 
 use crate::data::case::Case;
 use crate::data::condition::Condition;
-use crate::data::correction::InputCorrection;
 use crate::data::envelope::Envelope;
 use crate::data::input::RunInput;
 use crate::data::problem::Problem;
 use crate::data::runaway::Runaway;
 use crate::data::settings::NominalStart;
+use crate::data::setup::Setup;
 use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
 use crate::error::{Error, Result};
-use crate::nominal::motion::Corrected;
-use crate::nominal::steps::LinearSteps;
+use crate::nominal::motion::motion_until;
 
 impl Problem {
     /// Returns the cases of all suites, in their order. They are made when first asked for and
@@ -67,7 +65,7 @@ impl Problem {
         visit: impl Fn(Case) -> Result<T> + Sync,
     ) -> Result<Vec<T>> {
         let knows_run = self.setup().condition.is_none();
-        let by_run = knows_run && (by_run || !self.robot().warms_by().is_empty());
+        let by_run = knows_run && (by_run || self.setup().drive.input_differs_by_run());
         match suite.shared.as_ref().filter(|_| !by_run && self.inputs_are_current()) {
             Some(input) => Ok(vec![visit(Case {
                 name: format!("suite {}", suite.entry.name),
@@ -88,19 +86,14 @@ impl Problem {
 
     /// Returns whether the correction of the inputs is another for each run.
     pub(crate) fn differs_by_run(&self) -> bool {
-        self.setup().correction.as_ref().is_some_and(|c| c.differs_by_run())
+        self.setup().drive.compensation_differs_by_run()
     }
 
-    /// Returns whether the inputs that were computed at reading belong to the problem's robot in
-    /// the problem's condition: friction is in the input of motor and link torques, and viscous
-    /// friction in the input of link torques may have been fitted since.
+    /// Returns whether the problem's drive, in its condition, gives the inputs that were computed
+    /// at reading.
     fn inputs_are_current(&self) -> bool {
-        let is_warm = self.setup().condition.is_some() && !self.robot().warms_by().is_empty();
-        match self.settings().torque {
-            Torque::Compensated => true,
-            Torque::Motor => !is_warm,
-            Torque::Link => !is_warm && self.read.robot == *self.robot().description(),
-        }
+        let Setup { drive, condition, .. } = self.setup();
+        self.read.input_key == drive.input_key(condition.as_ref())
     }
 
     fn case_of_run(&self, suite: &Suite, index: usize, summary: &RunSummary) -> Result<Case> {
@@ -108,12 +101,10 @@ impl Problem {
         let recorded = self.run(run)?;
         let path = self.read.origin.run_name(run);
         let condition = self.setup().condition.as_ref().unwrap_or(&summary.condition).clone();
-        let warm = condition.warm(self.robot());
-        let robot = warm.as_ref().unwrap_or(self.robot());
-        let RunInput { grid, inputs } =
-            RunInput::new(&path, &recorded, robot, self.settings().torque)
-                .map_err(reachtube_recordings::Error::Defects)?;
-        let mut measured = Envelope::new(2 * recorded.joints);
+        let RunInput { grid, inputs } = (self.setup().drive)
+            .input(&path, &recorded, Some(&condition))
+            .map_err(reachtube_recordings::Error::Defects)?;
+        let mut measured = Envelope::new(self.shape().states);
         measured.include(run as u32, &recorded.states);
         let start = match self.settings().nominal {
             NominalStart::Mean => suite.nominal_start.clone(),
@@ -152,18 +143,12 @@ impl Problem {
 
     /// Takes the correction off the inputs of a case, up to where its nominal motion runs away.
     fn corrected_until(&self, case: Case) -> Result<(Case, Option<Runaway>)> {
-        let (robot, dynamics) = (self.robot(), self.dynamics());
-        let none = InputCorrection::none(robot.joint_count());
-        let correction = match &self.setup().correction {
-            Some(correction) => correction,
-            None if !self.setup().is_recorded_input() => &none,
-            None => return Ok((case, None)),
-        };
-        let settings = self.settings();
-        let model = Corrected { robot, dynamics, correction, settings, loads: None };
-        let steps =
-            dynamics.linear_system().map(|system| LinearSteps::new(system, case.grid.times()));
-        let (motion, runaway) = model.motion_until(&case, steps.as_ref())?;
+        let Setup { drive, dynamics, .. } = self.setup();
+        let compensation = drive.compensation(dynamics, &case.condition, None)?;
+        if compensation.is_none() {
+            return Ok((case, None));
+        }
+        let (motion, runaway) = motion_until(dynamics, &case, None, compensation)?;
         Ok((Case { inputs: motion.inputs.into(), ..case }, runaway))
     }
 }

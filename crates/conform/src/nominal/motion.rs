@@ -1,91 +1,63 @@
 use reachtube_ode::{Ensemble, InitialValueProblem, Outcome};
 use reachtube_reach::{Nonlinear, System};
 use reachtube_recordings::State;
-use reachtube_robot::Robot;
 
 use crate::data::case::Case;
-use crate::data::correction::InputCorrection;
 use crate::data::runaway::Runaway;
-use crate::data::settings::{Equations, Settings};
+use crate::data::setup::Compensation;
 use crate::error::{Error, Result};
-use crate::nominal::corrector::Corrector;
-use crate::nominal::loads::LoadsNear;
-use crate::nominal::robot_equations::RobotEquations;
 use crate::nominal::simulate::{BOUND, runs_away, substeps};
 use crate::nominal::steps::LinearSteps;
 
 /// A nominal motion with the inputs that cause it, unrounded.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct NominalMotion {
-    /// Samples x 2n.
+    /// Samples x N.
     pub states: Vec<f64>,
-    /// The corrected input, samples x n, N m. The last one acts on nothing and is the recorded one.
+    /// The corrected input, samples x m. The last one acts on nothing and is the recorded one.
     pub inputs: Vec<f64>,
 }
 
-/// A model whose input is corrected along its nominal motions.
-pub(crate) struct Corrected<'a> {
-    /// The robot.
-    pub robot: &'a Robot,
-    /// The model.
-    pub dynamics: &'a System,
-    /// The correction.
-    pub correction: &'a InputCorrection,
-    /// The settings.
-    pub settings: &'a Settings,
-    /// The loads of gravity near a motion of the same case that this one is close to; `None` to
-    /// compute them.
-    pub loads: Option<&'a LoadsNear>,
+/// Simulates the nominal motion of a case from its recorded inputs, less what is compensated;
+/// `steps` discretise a linear model over the case's grid.
+///
+/// # Errors
+///
+/// [`Error::RunsAway`](crate::Error::RunsAway).
+pub(crate) fn motion(
+    system: &System,
+    case: &Case,
+    steps: Option<&LinearSteps>,
+    compensation: Option<Box<dyn Compensation>>,
+) -> Result<NominalMotion> {
+    match motion_until(system, case, steps, compensation)? {
+        (motion, None) => Ok(motion),
+        (_, Some(Runaway { case, time, .. })) => Err(Error::RunsAway { case, time }),
+    }
 }
 
-impl Corrected<'_> {
-    /// Simulates the nominal motion of a case from its recorded inputs; `steps` discretise a linear
-    /// model over the case's grid.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::RunsAway`](crate::Error::RunsAway).
-    pub(crate) fn motion(&self, case: &Case, steps: Option<&LinearSteps>) -> Result<NominalMotion> {
-        match self.motion_until(case, steps)? {
-            (motion, None) => Ok(motion),
-            (_, Some(Runaway { case, time, .. })) => Err(Error::RunsAway { case, time }),
+/// Simulates the nominal motion of a case as [`motion`] does. If the motion of a linear model runs
+/// away, returns where; from there on its states and inputs are 0.
+///
+/// # Errors
+///
+/// [`Error::RunsAway`](crate::Error::RunsAway) for a model that is not linear.
+pub(crate) fn motion_until(
+    system: &System,
+    case: &Case,
+    steps: Option<&LinearSteps>,
+    mut compensation: Option<Box<dyn Compensation>>,
+) -> Result<(NominalMotion, Option<Runaway>)> {
+    let correct = |k: usize, x: &[f64], u: &mut [f64]| {
+        if let Some(compensation) = &mut compensation {
+            compensation.apply(k, x, u);
         }
-    }
-
-    /// Simulates the nominal motion of a case as [`motion`](Self::motion) does. If the motion of a
-    /// linear model runs away, returns where; from there on its states and inputs are 0.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::RunsAway`](crate::Error::RunsAway) for a model that is not linear.
-    pub(crate) fn motion_until(
-        &self,
-        case: &Case,
-        steps: Option<&LinearSteps>,
-    ) -> Result<(NominalMotion, Option<Runaway>)> {
-        let mut corrector =
-            Corrector::new(self.robot, self.correction, self.settings, &case.condition)?;
-        let mut equations = match self.settings.equations {
-            Equations::Model => None,
-            Equations::Robot => {
-                let model = self.dynamics.linear_system().ok_or(Error::Equations)?;
-                Some(RobotEquations::new(self.robot, model)?)
-            }
-        };
-        let correct = |k: usize, x: &[f64], u: &mut [f64]| {
-            let (q, qd) = x.split_at(u.len());
-            let near = self.loads.map(|loads| (loads, k));
-            corrector.take_off_near(near, q, &qd[..u.len()], u);
-            if let Some(equations) = &mut equations {
-                equations.replace(x, u);
-            }
-        };
-        match (steps, self.dynamics) {
-            (Some(steps), _) => Ok(linear(case, steps, correct)),
-            (None, System::Nonlinear(system)) => Ok((nonlinear(&**system, case, correct)?, None)),
-            (None, System::Linear(system)) => {
-                Ok(linear(case, &LinearSteps::new(system, case.grid.times()), correct))
-            }
+    };
+    match (steps, system) {
+        (Some(steps), _) => Ok(linear(case, steps, correct)),
+        (None, System::Nonlinear(system)) => Ok((nonlinear(&**system, case, correct)?, None)),
+        (None, System::Linear(system)) => {
+            Ok(linear(case, &LinearSteps::new(system, case.grid.times()), correct))
         }
     }
 }

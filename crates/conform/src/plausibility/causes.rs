@@ -116,7 +116,7 @@ fn horizon_or_parameters(problem: &Problem, longest: f64, unexplained: f64) -> C
     let description = problem.robot().description();
     let errors = |joint: &JointDescription| joint.friction.standard_errors.is_some();
     let is_identified = description.joints.iter().any(errors);
-    let is_fitted = problem.setup().correction.is_some();
+    let is_fitted = problem.setup().drive.is_fitted();
     Cause::Parameters { unexplained, is_identified, is_fitted, longest }
 }
 

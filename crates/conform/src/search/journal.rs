@@ -36,9 +36,8 @@ impl<'a> Journal<'a> {
     /// Opens the journal of a problem at `path`, or none.
     pub(super) fn new(path: Option<&'a Path>, problem: &Problem) -> Self {
         let mut digest = Sha256::new();
-        let (settings, robot) = (problem.settings(), problem.robot().description());
-        let correction = &problem.setup().correction;
-        let decides = serde_json::to_string(&(TOOL, settings, robot, correction));
+        let (settings, drive) = (problem.settings(), problem.setup().drive.identity());
+        let decides = serde_json::to_string(&(TOOL, settings, drive));
         digest.update(decides.expect("settings have only finite numbers and string keys"));
         digest.update(&problem.recordings().root);
         for suite in &problem.recordings().suites {

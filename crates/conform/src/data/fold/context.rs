@@ -1,20 +1,21 @@
 use std::path::Path;
+use std::sync::Arc;
 
-use reachtube_recordings::{Defect, DefectKind, ReadOptions, Run, Torque};
-use reachtube_robot::Robot;
+use reachtube_recordings::{Defect, DefectKind, ReadOptions, Run};
 use sha2::{Digest, Sha256};
 
 use crate::advice::Advice;
 use crate::data::input::RunInput;
 use crate::data::settings::{NominalStart, Settings};
-use crate::data::setup::{Setup, read_options, side};
+use crate::data::setup::{Drive, Setup, read_options, side};
+use crate::data::shape::Shape;
 use crate::error::{Error, Result};
 
 /// What the reading of recordings depends on.
 #[derive(Debug)]
 pub(crate) struct Context {
-    pub robot: Robot,
-    pub torque: Torque,
+    pub drive: Arc<dyn Drive>,
+    pub shape: Shape,
     pub options: ReadOptions,
     /// Whether every run has a nominal motion of its own, whatever its input.
     pub is_own: bool,
@@ -31,8 +32,8 @@ impl Context {
     ///
     /// Settings that need every run sample by sample.
     pub(crate) fn new(setup: &Setup) -> Result<Self> {
-        let Setup { robot, settings, correction, .. } = setup;
-        settings.validate(robot.joint_count())?;
+        let Setup { drive, dynamics, settings, .. } = setup;
+        settings.validate(dynamics.inputs())?;
         let is_linear = setup.dynamics.linear_system().is_some();
         let Settings { notion, .. } = settings;
         if notion.asks_points() && !is_linear {
@@ -41,19 +42,17 @@ impl Context {
             return Err(Error::Fold(Advice::from(problem).with("notion", "hull")));
         }
         let is_own = settings.nominal == NominalStart::Own
-            || setup.condition.is_none()
-                && (!robot.warms_by().is_empty()
-                    || correction.as_ref().is_some_and(|c| c.differs_by_run()));
+            || setup.condition.is_none() && setup.differs_by_run();
         let start_box = settings.operating_box.as_ref();
         let start_box =
-            start_box.map(|sides| (0..2 * robot.joint_count()).map(|i| side(sides, i)).collect());
+            start_box.map(|sides| (0..dynamics.states()).map(|i| side(sides, i)).collect());
         let options = read_options(setup);
-        let parts = (robot.description(), settings.torque, settings.until, &start_box, is_own);
+        let parts = (drive.identity(), settings.until, &start_box, is_own);
         let mut text = serde_json::to_string(&parts).expect("settings have string keys");
         text += &format!("{:?}", options.gap_limit);
         let digest = Sha256::digest(text).into();
-        let (robot, torque) = (robot.clone(), settings.torque);
-        Ok(Self { robot, torque, options, is_own, start_box, digest })
+        let shape = Shape { states: dynamics.states(), inputs: dynamics.inputs() };
+        Ok(Self { drive: Arc::clone(drive), shape, options, is_own, start_box, digest })
     }
 
     /// Returns the input along a run.
@@ -62,7 +61,7 @@ impl Context {
     ///
     /// The defects of the run.
     pub(crate) fn input(&self, file: &str, run: &Run) -> Result<RunInput, Vec<Defect>> {
-        let (path, n) = (Path::new(file), self.robot.joint_count());
+        let (path, n) = (Path::new(file), self.shape.inputs);
         let lengths = [run.states.len(), 2 * run.torques.len()];
         if run.joints != n || run.is_empty() || lengths != [2 * n * run.len(); 2] {
             let problem = format!(
@@ -74,6 +73,6 @@ impl Context {
             let defect = Defect::new(path, None, problem, remedy).of_kind(DefectKind::Joints);
             return Err(vec![defect]);
         }
-        RunInput::new(path, run, &self.robot, self.torque)
+        self.drive.input(path, run, None)
     }
 }

@@ -74,13 +74,13 @@ impl SuiteFold {
 
     /// Merges the fold of other runs.
     pub(super) fn merge(&mut self, other: Self, context: &Context, most_bytes: usize) {
-        let joints = context.robot.joint_count();
+        let inputs = context.shape.inputs;
         let motions = self.motion.take().into_iter().chain(other.motion);
         self.motion = motions.min_by_key(|(place, _)| *place);
         self.totals.merge(other.totals);
         self.envelope.merge(&other.envelope);
         let shared = self.shared.take().zip(other.shared);
-        self.shared = shared.and_then(|(own, other)| own.merge(other, joints));
+        self.shared = shared.and_then(|(own, other)| own.merge(other, inputs));
         replace(&mut self.whole, |whole| whole.merge(other.whole, context, most_bytes));
         self.runs.extend(other.runs);
         self.names.extend(other.names);
@@ -138,7 +138,7 @@ impl SuiteFold {
     /// Completes what was read from bytes: inputs of whole runs, and places and grids of summaries,
     /// which share theirs. `None` if the parts do not fit together.
     pub(super) fn completed(mut self, context: &Context) -> Option<Self> {
-        let states = 2 * context.robot.joint_count();
+        let states = context.shape.states;
         self.whole = self.whole.with_inputs(context)?;
         let shared = self.shared.as_ref().map(|shared| &shared.input);
         let input = shared.or_else(|| self.whole.iter().next().map(|(_, run)| &run.input))?;
@@ -179,7 +179,7 @@ impl SuiteFold {
         };
         let [low, high] = sides[state];
         let file = self.names[&place].0.clone();
-        let state = State::from_index(state, context.robot.joint_count());
+        let state = State::from_index(state, context.shape.inputs);
         Err(Error::StartsOutsideBox { file, state, value, low, high })
     }
 }

@@ -77,10 +77,10 @@ impl WholeRuns {
     /// are cases of their own anyway, up to `most_bytes`. Both depend on the runs only, and what
     /// holds for all holds for every part, so that the order makes no difference.
     pub(super) fn merge(self, other: Self, context: &Context, most_bytes: usize) -> Self {
-        let joints = context.robot.joint_count();
+        let inputs = context.shape.inputs;
         match (self, other) {
             (Self::All(mut own), Self::All(other)) => {
-                let shares = |a: &WholeRun, b: &WholeRun| a.input.shares(&b.input, joints);
+                let shares = |a: &WholeRun, b: &WholeRun| a.input.shares(&b.input, inputs);
                 let any_shares = || own.values().any(|a| other.values().any(|b| shares(a, b)));
                 let bytes: usize = own.values().chain(other.values()).map(WholeRun::bytes).sum();
                 let stay = bytes <= most_bytes && (context.is_own || !any_shares());
@@ -106,7 +106,7 @@ impl WholeRuns {
     /// Computes the inputs of runs that were read from bytes; `None` if a run is none.
     pub(super) fn with_inputs(mut self, context: &Context) -> Option<Self> {
         let complete = |WholeRun { run, input }: &mut WholeRun| {
-            run.joints = context.robot.joint_count();
+            run.joints = context.shape.inputs;
             *input = context.input("", run).ok()?;
             Some(())
         };

@@ -1,6 +1,6 @@
 //! What sets are used for beyond what they were proved for.
 
-use crate::data::correction::JointCorrection;
+use crate::arm::JointCorrection;
 use crate::data::problem::Problem;
 use crate::data::settings::States;
 use crate::model::file::Model;

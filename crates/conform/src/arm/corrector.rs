@@ -1,23 +1,23 @@
 //! The correction of the input, evaluated at one state after another without allocation.
 
-use std::borrow::Cow;
+use std::sync::Arc;
 
 use reachtube_recordings::Torque;
 use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
+use crate::arm::arm::Arm;
+use crate::arm::correction::{InputCorrection, JointCorrection};
+use crate::arm::loads::LoadsNear;
 use crate::data::condition::Condition;
-use crate::data::correction::{InputCorrection, JointCorrection};
-use crate::data::settings::Settings;
 use crate::error::Result;
-use crate::nominal::loads::LoadsNear;
 
 /// Evaluates a correction for one robot.
 #[derive(Debug, Clone)]
-pub(crate) struct Corrector<'a> {
-    robot: Cow<'a, Robot>,
-    correction: Cow<'a, InputCorrection>,
+pub(super) struct Corrector {
+    robot: Arc<Robot>,
+    correction: InputCorrection,
     /// The velocities of the expansion point, n.
-    origin: Cow<'a, [f64]>,
+    origin: Vec<f64>,
     /// The warmth of each joint as the correction counts it, n.
     warmth: Vec<f64>,
     /// Coulomb friction of each joint beyond the robot's own, in parts of it, n.
@@ -35,19 +35,18 @@ pub(crate) struct Corrector<'a> {
     torque: Vec<f64>,
 }
 
-impl<'a> Corrector<'a> {
-    /// Prepares the correction of `robot` in one condition.
+impl Corrector {
+    /// Prepares a correction of an arm in one condition.
     ///
     /// # Errors
     ///
     /// When no robot can be made with a payload only.
-    pub(crate) fn new(
-        robot: &'a Robot,
-        correction: &'a InputCorrection,
-        settings: &'a Settings,
+    pub(super) fn new(
+        arm: &Arm,
+        correction: &InputCorrection,
         condition: &Condition,
     ) -> Result<Self> {
-        let n = robot.joint_count();
+        let (robot, n) = (arm.robot(), arm.robot().joint_count());
         let warmth = correction.warmth(condition);
         let warm_parts = |(joint, warmth): (&JointCorrection, &f64)| {
             joint.coulomb.map(|part| part + joint.warm_up_coulomb * warmth)
@@ -60,13 +59,13 @@ impl<'a> Corrector<'a> {
         };
         let zeros = || vec![0.0; n];
         Ok(Self {
-            robot: Cow::Borrowed(robot),
-            correction: Cow::Borrowed(correction),
-            origin: Cow::Borrowed(&settings.expansion_point.qd),
+            robot: Arc::clone(&arm.robot),
+            correction: correction.clone(),
+            origin: arm.expansion_point.qd.clone(),
             warmth,
             coulomb,
-            warm: condition.warm(robot),
-            is_compensated: settings.torque == Torque::Compensated,
+            warm: arm.warm(condition),
+            is_compensated: arm.torque == Torque::Compensated,
             has_coulomb,
             unit_payload,
             workspace: Workspace::new(robot),
@@ -76,35 +75,9 @@ impl<'a> Corrector<'a> {
         })
     }
 
-    /// Takes copies of what it borrows.
-    pub(crate) fn into_owned(self) -> Corrector<'static> {
-        let Self { warmth, coulomb, warm, is_compensated, has_coulomb, unit_payload, .. } = self;
-        let Self { workspace, sin, cos, torque, .. } = self;
-        Corrector {
-            robot: Cow::Owned(self.robot.into_owned()),
-            correction: Cow::Owned(self.correction.into_owned()),
-            origin: Cow::Owned(self.origin.into_owned()),
-            warmth,
-            coulomb,
-            warm,
-            is_compensated,
-            has_coulomb,
-            unit_payload,
-            workspace,
-            sin,
-            cos,
-            torque,
-        }
-    }
-
-    /// Takes the correction at the state (q, q̇) off the input `u` (n, N m).
-    pub(crate) fn take_off(&mut self, q: &[f64], qd: &[f64], u: &mut [f64]) {
-        self.take_off_near(None, q, qd, u);
-    }
-
-    /// Takes the correction off as [`take_off`](Self::take_off) does; with the loads of gravity
-    /// near a sample of a motion, if they are given.
-    pub(crate) fn take_off_near(
+    /// Takes the correction at the state (q, q̇) off the input `u` (n, N m); with the loads of
+    /// gravity near a sample of a motion, if they are given.
+    pub(super) fn take_off(
         &mut self,
         near: Option<(&LoadsNear, usize)>,
         q: &[f64],

@@ -1,63 +1,37 @@
 use std::f64::consts::LN_10;
+use std::sync::Arc;
 
 use reachtube_robot::{GravityMoments, ParameterKind, Robot, RobotDescription};
 
+use crate::arm::arm::Arm;
+use crate::arm::correction::InputCorrection;
+use crate::arm::quantity::{OfJoint, Quantity, first};
+use crate::arm::rising::{BEYOND_FITTED, RisingFriction};
 use crate::arm::system::system;
-use crate::data::correction::InputCorrection;
 use crate::data::settings::Equations;
-use crate::data::setup::Setup;
+use crate::data::setup::{Asked, FreeParameter, Parameters, Setup};
 use crate::error::Result;
 use crate::fit::group::Group;
-use crate::fit::rising::{BEYOND_FITTED, RisingFriction};
+use crate::fit::record::FittedParameter;
 
 /// The number of inertial parameters of a link.
 const INERTIAL: usize = ParameterKind::INERTIAL.len();
 
-/// What a number of a fit changes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Quantity {
-    /// The motor inertia: the number is half the logarithm of the factor on the inertia that the
-    /// motor feels at the expansion point. Half, because a velocity that is scaled by a factor
-    /// scales its inertia by the square.
-    MotorInertia,
-    /// The density of a link: half the logarithm of a factor.
-    Density,
-    /// v1: the logarithm of a factor.
-    Viscous,
-    /// v2 and v3: a factor minus 1.
-    Cubic,
-    /// Coulomb friction in these quadrants: a factor minus 1.
-    Coulomb([bool; 4]),
-    /// The change of v1 with the warmth, in parts of v1.
-    WarmUp,
-    /// The change of Coulomb friction with the warmth, in parts of it.
-    WarmUpCoulomb,
-    /// A mass, kg.
-    Payload,
-}
-
-/// One number that a fit moves. The number 0 stands for the identified value.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FreeParameter {
-    pub quantity: Quantity,
-    /// The joint, from 0.
-    pub joint: usize,
-    /// The lowest and the highest number allowed.
-    pub bounds: [f64; 2],
-}
-
 /// The parameters of a fit, and the model that they give.
-pub(crate) struct Parameters<'a> {
-    setup: &'a Setup,
+#[derive(Debug, Clone)]
+pub(super) struct ArmParameters {
+    arm: Arm,
+    setup: Setup,
     /// The diagonal of the mass matrix at the expansion point, n, kg m².
     inertia: Vec<f64>,
     /// The inertial parameters of each link, 10 n.
     links: Vec<f64>,
     /// The temperatures above which warm-up counts, n, °C; `None` if it counts by the run.
     temperatures: Option<Vec<f64>>,
-    pub list: Vec<FreeParameter>,
+    list: Vec<FreeParameter>,
+    of: Vec<OfJoint>,
     /// Conditions on friction that could fall with speed.
-    pub rising: Vec<RisingFriction>,
+    rising: Vec<RisingFriction>,
 }
 
 /// Numbers of logarithms lie within this distance from 0: a factor of 10.
@@ -77,89 +51,61 @@ const LARGEST_PAYLOAD: f64 = 100.0;
 /// large as the numbers of warm-up by ln(run).
 const WARMING: f64 = 10.0;
 
-impl Quantity {
-    /// Returns the group.
-    pub(crate) fn group(self) -> Group {
-        match self {
-            Self::MotorInertia | Self::Density => Group::Inertia,
-            Self::Viscous => Group::Viscous,
-            Self::Cubic => Group::Cubic,
-            Self::Coulomb(_) => Group::Coulomb,
-            Self::WarmUp | Self::WarmUpCoulomb => Group::WarmUp,
-            Self::Payload => Group::Payload,
-        }
-    }
-}
-
-impl<'a> Parameters<'a> {
-    /// Lists the parameters of `groups` that the robot has. Without a velocity limit, friction must
-    /// rise up to twice the highest speed of each joint in the recordings, `speeds`, rad/s; no
-    /// speeds for a model whose friction is linear. Warm-up counts the temperatures above
-    /// `temperatures`, n, °C, or ln(run) without them.
-    pub(crate) fn new(
-        setup: &'a Setup,
-        groups: &[Group],
-        speeds: &[f64],
-        temperatures: Option<Vec<f64>>,
-    ) -> Self {
-        let robot = &setup.robot;
-        let mass_matrix = robot.mass_matrix(&setup.settings.expansion_point.q);
-        let inertia = mass_matrix.diagonal().iter().copied().collect();
-        let (links, list) = (robot.inertial_parameters(), Vec::new());
-        let mut parameters = Self { setup, inertia, links, temperatures, list, rising: Vec::new() };
-        for group in Group::ALL.into_iter().filter(|group| groups.contains(group)) {
+impl ArmParameters {
+    /// Lists the parameters of the groups that the robot has. Without a velocity limit, friction
+    /// that may fall with speed must rise up to twice the highest speed of each joint in the
+    /// recordings. Warm-up counts temperatures above those asked for, or ln(run) without them.
+    pub(super) fn new(arm: &Arm, setup: &Setup, asked: &Asked) -> Self {
+        let robot = arm.robot();
+        let mass_matrix = robot.mass_matrix(&arm.expansion_point.q);
+        let mut parameters = Self {
+            arm: arm.clone(),
+            setup: setup.clone(),
+            inertia: mass_matrix.diagonal().iter().copied().collect(),
+            links: robot.inertial_parameters(),
+            temperatures: asked.temperatures.clone(),
+            list: Vec::new(),
+            of: Vec::new(),
+            rising: Vec::new(),
+        };
+        for group in Group::ALL.into_iter().filter(|group| asked.groups.contains(group)) {
             for joint in 0..robot.joint_count() {
-                let of_joint = parameters.of_joint(group, joint);
-                let make = |(quantity, bounds)| FreeParameter { quantity, joint, bounds };
-                parameters.list.extend(of_joint.into_iter().map(make));
+                for (quantity, bounds) in parameters.of_joint(group, joint) {
+                    let changes_system = parameters.changes_system(quantity);
+                    let (group, kind) = (quantity.group(), quantity.kind());
+                    parameters.list.push(FreeParameter { group, kind, bounds, changes_system });
+                    parameters.of.push(OfJoint { quantity, joint });
+                }
             }
         }
-        let rising = |(joint, speed): (usize, &f64)| {
-            let (viscous, limit) =
-                (robot.joints()[joint].friction.viscous, robot.joints()[joint].velocity_limit);
-            let limit = limit.map_or(BEYOND_FITTED * speed, |limit| limit.max(*speed));
-            let own = [viscous.v1, viscous.v2, viscous.v3];
-            let fitted = [Quantity::Viscous, Quantity::Cubic].map(|quantity| {
-                let is = |own: &FreeParameter| own.joint == joint && own.quantity == quantity;
-                parameters.list.iter().position(is)
-            });
-            RisingFriction::new(fitted, own, limit)
-        };
-        parameters.rising = speeds.iter().enumerate().filter_map(rising).collect();
+        // A linear model whose friction is linear too has none that falls with speed.
+        let is_cubic = asked.is_nonlinear
+            || arm.equations == Equations::Robot
+            || asked.groups.contains(&Group::Cubic);
+        let speeds = asked.bounds.iter().skip(robot.joint_count()).filter(|_| is_cubic);
+        let rising = speeds.enumerate().filter_map(|(j, bounds)| parameters.rising(j, bounds));
+        parameters.rising = rising.collect();
         parameters
     }
 
-    /// Returns the parameters that are in none of the groups `held`.
-    pub(crate) fn except(&self, held: &[Group]) -> Vec<usize> {
-        let list = self.list.iter().enumerate();
-        list.filter(|(_, own)| !held.contains(&own.quantity.group())).map(|(p, _)| p).collect()
+    /// Returns the condition on the friction of a joint (from 0) whose recorded velocities lie
+    /// between bounds.
+    fn rising(&self, joint: usize, [low, high]: &[f64; 2]) -> Option<RisingFriction> {
+        let (drive, speed) = (&self.arm.robot.joints()[joint], high.max(-low));
+        let viscous = drive.friction.viscous;
+        let limit = drive.velocity_limit.map_or(BEYOND_FITTED * speed, |limit| limit.max(speed));
+        let fitted = [Quantity::Viscous, Quantity::Cubic]
+            .map(|quantity| self.of.iter().position(|own| *own == OfJoint { quantity, joint }));
+        RisingFriction::new(fitted, [viscous.v1, viscous.v2, viscous.v3], limit)
     }
 
-    /// Returns the numbers that a fit starts from: the identified values, but friction that rises.
-    pub(crate) fn start(&self) -> Vec<f64> {
-        let mut numbers = vec![0.0; self.len()];
-        self.rising.iter().for_each(|condition| condition.start(&mut numbers));
-        numbers
-    }
-
-    /// Returns the identified model.
-    pub(crate) fn setup(&self) -> &'a Setup {
-        self.setup
-    }
-
-    /// Returns the groups that have parameters.
-    pub(crate) fn groups(&self) -> Vec<Group> {
-        let has = |group: &Group| self.list.iter().any(|own| own.quantity.group() == *group);
-        Group::ALL.into_iter().filter(has).collect()
-    }
-
-    /// Returns the number of parameters.
-    pub(crate) fn len(&self) -> usize {
-        self.list.len()
+    /// Returns the robot.
+    fn robot(&self) -> &Robot {
+        &self.arm.robot
     }
 
     fn of_joint(&self, group: Group, joint: usize) -> Vec<(Quantity, [f64; 2])> {
-        let drive = &self.setup.robot.joints()[joint];
+        let drive = &self.arm.robot.joints()[joint];
         let viscous = &drive.friction.viscous;
         let is_last = joint + 1 == self.inertia.len();
         let if_any =
@@ -180,7 +126,7 @@ impl<'a> Parameters<'a> {
             Group::Coulomb => self.coulomb(joint),
             Group::WarmUp => {
                 // By the run, Coulomb friction warms up as far as the robot's own law has it.
-                let coulomb = self.setup.robot.description().joints[joint].friction.coulomb;
+                let coulomb = self.arm.robot.description().joints[joint].friction.coulomb;
                 let is_coulomb = self.temperatures.is_some() && coulomb != [0.0; 8];
                 let bounds = [-0.9, 2.0];
                 let mut both = if_any(viscous.v1 > 0.0, Quantity::WarmUp, bounds);
@@ -194,7 +140,7 @@ impl<'a> Parameters<'a> {
     /// One parameter per quadrant where the quadrants differ, one for all where they do not, none
     /// without Coulomb friction.
     fn coulomb(&self, joint: usize) -> Vec<(Quantity, [f64; 2])> {
-        let a = self.setup.robot.description().joints[joint].friction.coulomb;
+        let a = self.arm.robot.description().joints[joint].friction.coulomb;
         let is_plain = a[1..].iter().step_by(2).all(|slope| *slope == 0.0)
             && a.iter().step_by(2).all(|offset| offset.abs() == a[0].abs());
         let quadrants: Vec<[bool; 4]> = if a == [0.0; 8] {
@@ -211,28 +157,20 @@ impl<'a> Parameters<'a> {
         &self.links[INERTIAL * joint..INERTIAL * (joint + 1)]
     }
 
-    /// Returns whether parameter `p` changes A and B, and not only the nominal motions.
-    pub(crate) fn changes_model(&self, p: usize) -> bool {
-        match self.list[p].quantity {
-            Quantity::Cubic => self.setup.settings.abstraction.order >= 2,
+    /// Returns whether a quantity changes A and B, and not only the nominal motions.
+    fn changes_system(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::Cubic => self.arm.abstraction.order >= 2,
             Quantity::Coulomb(_) | Quantity::WarmUp | Quantity::WarmUpCoulomb => false,
             _ => true,
         }
     }
 
-    /// Returns whether the correction of a nominal motion may need the loads of gravity.
-    pub(crate) fn needs_loads(&self) -> bool {
-        let is_dry = |own: &FreeParameter| {
-            matches!(own.quantity, Quantity::Coulomb(_) | Quantity::WarmUpCoulomb)
-        };
-        self.list.iter().any(is_dry) || !self.setup.robot.warms_by().is_empty()
-    }
-
     /// Returns the identified and the fitted value of parameter `p`, and what multiplies the
     /// identified value where that is how it changes.
-    pub(crate) fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {
-        let FreeParameter { quantity, joint, .. } = self.list[p];
-        let viscous = &self.setup.robot.joints()[joint].friction.viscous;
+    fn values(&self, p: usize, number: f64) -> (f64, f64, Option<f64>) {
+        let OfJoint { quantity, joint } = self.of[p];
+        let viscous = &self.arm.robot.joints()[joint].friction.viscous;
         let times = |identified: f64, factor: f64| (identified, identified * factor, Some(factor));
         match quantity {
             Quantity::MotorInertia => times(self.inertia[joint], (2.0 * number).exp()),
@@ -240,7 +178,7 @@ impl<'a> Parameters<'a> {
             Quantity::Viscous => times(viscous.v1, number.exp()),
             Quantity::Cubic => times(viscous.v3, 1.0 + number),
             Quantity::Coulomb(quadrants) => {
-                let a = self.setup.robot.description().joints[joint].friction.coulomb;
+                let a = self.arm.robot.description().joints[joint].friction.coulomb;
                 times(a[2 * first(quadrants)], 1.0 + number)
             }
             Quantity::WarmUp => (0.0, viscous.v1 * self.per_warmth(number), None),
@@ -249,21 +187,16 @@ impl<'a> Parameters<'a> {
         }
     }
 
-    /// Returns whether warm-up counts by temperature.
-    pub(crate) fn warms_by_temperature(&self) -> bool {
-        self.temperatures.is_some()
-    }
-
     /// Returns the change per unit of warmth that a number of warm-up stands for: per K or ln(run).
     fn per_warmth(&self, number: f64) -> f64 {
-        if self.warms_by_temperature() { number / WARMING } else { number }
+        if self.temperatures.is_some() { number / WARMING } else { number }
     }
 
     /// Returns the standard error of the identified value of parameter `p`, where the robot's
     /// description has it.
-    pub(crate) fn standard_error(&self, p: usize) -> Option<f64> {
-        let FreeParameter { quantity, joint, .. } = self.list[p];
-        let errors = self.setup.robot.description().joints[joint].friction.standard_errors?;
+    fn standard_error(&self, p: usize) -> Option<f64> {
+        let OfJoint { quantity, joint } = self.of[p];
+        let errors = self.arm.robot.description().joints[joint].friction.standard_errors?;
         let error = match quantity {
             Quantity::Viscous => errors.viscous[0],
             Quantity::Cubic => errors.viscous[2],
@@ -273,21 +206,39 @@ impl<'a> Parameters<'a> {
         (error > 0.0).then_some(error)
     }
 
-    /// Returns the model with these numbers, one per parameter.
-    ///
-    /// # Errors
-    ///
-    /// When the robot is not physical at the expansion point.
-    pub(crate) fn apply(&self, numbers: &[f64]) -> Result<Setup> {
-        let Setup { robot, settings, nominal_starts, .. } = self.setup;
+    /// The quadratic and cubic viscous friction that is missing at the order of the model, about
+    /// the velocity of the expansion point. The robot's own equations leave nothing out.
+    fn left_out(&self, joint: usize, v2: f64, v3: f64) -> [f64; 2] {
+        if self.arm.equations == Equations::Robot {
+            return [0.0, 0.0];
+        }
+        let origin = self.arm.expansion_point.qd[joint];
+        match self.arm.abstraction.order {
+            1 => [v2 + 3.0 * v3 * origin, v3],
+            2 => [0.0, v3],
+            _ => [0.0, 0.0],
+        }
+    }
+}
+
+impl Parameters for ArmParameters {
+    fn list(&self) -> &[FreeParameter] {
+        &self.list
+    }
+
+    fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    fn apply(&self, numbers: &[f64]) -> Result<Setup> {
+        let robot = self.robot();
         let mut correction = InputCorrection::none(robot.joint_count());
         let (mut changed, mut values, mut links) = (Vec::new(), Vec::new(), self.links.clone());
         let mut change = |joint, kind, value| {
             changed.push(reachtube_robot::Parameter { joint, kind });
             values.push(value);
         };
-        for (parameter, &number) in self.list.iter().zip(numbers) {
-            let FreeParameter { quantity, joint, .. } = *parameter;
+        for (&OfJoint { quantity, joint }, &number) in self.of.iter().zip(numbers) {
             let (drive, corrected) = (&robot.joints()[joint], &mut correction.joints[joint]);
             let viscous = &drive.friction.viscous;
             match quantity {
@@ -320,7 +271,7 @@ impl<'a> Parameters<'a> {
                 }
             }
         }
-        if self.groups().contains(&Group::WarmUp) {
+        if self.list.iter().any(|own| own.group == Group::WarmUp) {
             correction.reference_temperatures.clone_from(&self.temperatures);
         }
         for (at, (new, old)) in links.iter().zip(&self.links).enumerate() {
@@ -333,34 +284,55 @@ impl<'a> Parameters<'a> {
             keep_weight(robot, &mut description);
         }
         let robot = Robot::from_description(&description)?;
-        let correction = Some(correction);
-        let (dynamics, condition) = (system(&robot, settings)?, None);
-        let (settings, nominal_starts) = (settings.clone(), nominal_starts.clone());
-        Ok(Setup { robot, dynamics, settings, nominal_starts, correction, condition })
+        let (settings, nominal_starts) = (&self.setup.settings, self.setup.nominal_starts.clone());
+        let dynamics = system(&robot, settings)?;
+        let arm = Arm { robot: Arc::new(robot), correction: Some(correction), ..self.arm.clone() };
+        Ok(Setup { nominal_starts, ..Setup::of_arm(arm, dynamics, settings.clone()) })
     }
 
-    /// The quadratic and cubic viscous friction that is missing at the order of the model, about
-    /// the velocity of the expansion point. The robot's own equations leave nothing out.
-    fn left_out(&self, joint: usize, v2: f64, v3: f64) -> [f64; 2] {
-        if self.setup.settings.equations == Equations::Robot {
-            return [0.0, 0.0];
-        }
-        let origin = self.setup.settings.expansion_point.qd[joint];
-        match self.setup.settings.abstraction.order {
-            1 => [v2 + 3.0 * v3 * origin, v3],
-            2 => [0.0, v3],
-            _ => [0.0, 0.0],
-        }
+    fn check(&self, setup: &Setup) -> Result<()> {
+        setup.robot().check_physical()?;
+        Ok(())
+    }
+
+    fn none(&self) -> Box<dyn Parameters> {
+        Box::new(Self::new(&self.arm, &self.setup, &Asked::default()))
+    }
+
+    /// Returns the identified values, but friction that rises.
+    fn start(&self) -> Vec<f64> {
+        let mut numbers = vec![0.0; self.list.len()];
+        self.rising.iter().for_each(|condition| condition.start(&mut numbers));
+        numbers
+    }
+
+    fn conditions(&self, numbers: &[f64]) -> Vec<(Vec<(usize, f64)>, f64)> {
+        self.rising.iter().map(|condition| condition.tangent(numbers)).collect()
+    }
+
+    /// Returns whether the correction of a nominal motion may need the loads of gravity.
+    fn has_near(&self) -> bool {
+        let is_dry =
+            |own: &OfJoint| matches!(own.quantity, Quantity::Coulomb(_) | Quantity::WarmUpCoulomb);
+        self.of.iter().any(is_dry) || !self.arm.robot.warms_by().is_empty()
+    }
+
+    fn describe(&self, numbers: &[f64]) -> Vec<FittedParameter> {
+        let of = |(p, number): (usize, &f64)| {
+            let OfJoint { quantity, joint } = self.of[p];
+            let kind = self.robot().joints()[joint].kind;
+            let (identified, fitted, factor) = self.values(p, *number);
+            let (name, unit) = quantity.name_and_unit(kind, self.temperatures.is_some());
+            let (group, joint, standard_error) =
+                (quantity.group(), joint + 1, self.standard_error(p));
+            FittedParameter { group, name, joint, unit, identified, standard_error, fitted, factor }
+        };
+        numbers.iter().enumerate().map(of).collect()
     }
 }
 
 fn half(x: f64) -> f64 {
     0.5 * x
-}
-
-/// The first of some quadrants.
-fn first(quadrants: [bool; 4]) -> usize {
-    quadrants.iter().position(|is| *is).unwrap_or(0)
 }
 
 /// Gives the links of a description the weight they have in `robot`: what is added to them is not

@@ -12,7 +12,7 @@ const AT_ONCE: usize = 8;
 /// The gravity torque of a robot to first order about the positions of a motion. Floating point: no
 /// proof rests on it.
 #[derive(Debug)]
-pub(crate) struct LoadsNear {
+pub(super) struct LoadsNear {
     joints: usize,
     /// For each sample q, g(q) and the columns of ∂g/∂q.
     samples: Vec<f64>,
@@ -20,7 +20,7 @@ pub(crate) struct LoadsNear {
 
 impl LoadsNear {
     /// Expands the loads of `robot` about the `states` of a motion, samples x 2n.
-    pub(crate) fn along(robot: &Robot, states: &[f64]) -> Self {
+    pub(super) fn along(robot: &Robot, states: &[f64]) -> Self {
         let n = robot.joint_count();
         let mut samples = Vec::with_capacity(states.len() / 2 * (n + 2));
         let mut workspace = Workspace::<Lanes<AT_ONCE>>::new(robot);
@@ -50,7 +50,7 @@ impl LoadsNear {
     }
 
     /// Computes the loads at `q`, near sample `k`, into `load` (n, N m).
-    pub(crate) fn at(&self, k: usize, q: &[f64], load: &mut [f64]) {
+    pub(super) fn at(&self, k: usize, q: &[f64], load: &mut [f64]) {
         let n = self.joints;
         let sample = &self.samples[k * n * (n + 2)..][..n * (n + 2)];
         let (about, rest) = sample.split_at(n);

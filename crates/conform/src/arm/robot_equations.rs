@@ -9,8 +9,8 @@ use crate::error::{Error, Result};
 
 /// The robot's equations of motion (10) beside a linear model of it.
 #[derive(Debug)]
-pub(crate) struct RobotEquations<'a> {
-    robot: RobotField<'a, f64>,
+pub(super) struct RobotEquations {
+    robot: RobotField<'static, f64>,
     /// The last n rows of A, for q̈, n x 2n.
     of_state: DMatrix<f64>,
     /// The last n entries of d.
@@ -25,17 +25,17 @@ pub(crate) struct RobotEquations<'a> {
     input: DVector<f64>,
 }
 
-impl<'a> RobotEquations<'a> {
+impl RobotEquations {
     /// Lays the equations of `robot` beside the equations of `model`.
     ///
     /// # Errors
     ///
     /// [`Error::Equations`] where an input of the model moves no joint.
-    pub(crate) fn new(robot: &'a Robot, model: &LinearSystem) -> Result<Self> {
+    pub(super) fn new(robot: &Robot, model: &LinearSystem) -> Result<Self> {
         let n = robot.joint_count();
         let of_input = model.b().rows(n, n).into_owned();
         Ok(Self {
-            robot: RobotField::new(robot, DrivenBy::Input),
+            robot: RobotField::new(robot, DrivenBy::Input).into_owned(),
             of_state: model.a().rows(n, n).into_owned(),
             drift: model.drift().rows(n, n).into_owned(),
             of_acceleration: of_input.try_inverse().ok_or(Error::Equations)?,
@@ -45,16 +45,9 @@ impl<'a> RobotEquations<'a> {
         })
     }
 
-    /// Takes a copy of the robot.
-    pub(crate) fn into_owned(self) -> RobotEquations<'static> {
-        let Self { robot, of_state, drift, of_acceleration, rate, missing, input } = self;
-        let robot = robot.into_owned();
-        RobotEquations { robot, of_state, drift, of_acceleration, rate, missing, input }
-    }
-
     /// Replaces the robot's input `u` (n, N m) at the state `x` (2n) by the model's: the q̈ of the
     /// model then equals the robot's.
-    pub(crate) fn replace(&mut self, x: &[f64], u: &mut [f64]) {
+    pub(super) fn replace(&mut self, x: &[f64], u: &mut [f64]) {
         self.robot.rate(0.0, x, u, &mut self.rate);
         let (n, drift) = (u.len(), &self.drift);
         for (j, row) in self.of_state.row_iter().enumerate() {

@@ -1,0 +1,161 @@
+//! How an arm drives a model of its motion along recordings.
+
+use std::any::Any;
+use std::path::Path;
+use std::sync::Arc;
+
+use reachtube_abstraction::Abstraction;
+use reachtube_reach::System;
+use reachtube_recordings::{Defect, Run, Torque};
+use reachtube_robot::friction::WarmingBy;
+
+use crate::arm::arm::Arm;
+use crate::arm::correction::InputCorrection;
+use crate::arm::corrector::Corrector;
+use crate::arm::input::input;
+use crate::arm::input_error;
+use crate::arm::loads::LoadsNear;
+use crate::arm::parameters::ArmParameters;
+use crate::arm::robot_equations::RobotEquations;
+use crate::arm::system::system;
+use crate::data::case::Case;
+use crate::data::condition::Condition;
+use crate::data::input::RunInput;
+use crate::data::settings::{Equations, Method};
+use crate::data::setup::{Asked, Compensation, Drive, Near, Parameters, Setup};
+use crate::error::{Error, Result};
+use crate::fit::group::Group;
+
+impl Drive for Arm {
+    fn input(
+        &self,
+        path: &Path,
+        run: &Run,
+        at: Option<&Condition>,
+    ) -> Result<RunInput, Vec<Defect>> {
+        let warm = at.and_then(|at| self.warm(at));
+        input(path, run, warm.as_ref().unwrap_or(&self.robot), self.torque)
+    }
+
+    /// Friction is in the input of motor and link torques, and viscous friction in the input of
+    /// link torques may be fitted.
+    fn input_key(&self, at: Option<&Condition>) -> String {
+        let warm = at.filter(|_| !self.robot.warms_by().is_empty());
+        let warm = warm.map_or_else(String::new, |at| format!("{at:?}"));
+        match self.torque {
+            Torque::Compensated => String::new(),
+            Torque::Motor => warm,
+            Torque::Link => warm + &json(self.robot.description()),
+        }
+    }
+
+    fn input_differs_by_run(&self) -> bool {
+        !self.robot.warms_by().is_empty()
+    }
+
+    fn compensation_differs_by_run(&self) -> bool {
+        self.correction.as_ref().is_some_and(InputCorrection::differs_by_run)
+    }
+
+    fn compensation(
+        &self,
+        system: &System,
+        at: &Condition,
+        near: Option<&Near>,
+    ) -> Result<Option<Box<dyn Compensation>>> {
+        if self.is_recorded_input() {
+            return Ok(None);
+        }
+        let none = InputCorrection::none(self.robot.joint_count());
+        let correction = self.correction.as_ref().unwrap_or(&none);
+        let corrector = Corrector::new(self, correction, at)?;
+        let equations = match self.equations {
+            Equations::Model => None,
+            Equations::Robot => {
+                let model = system.linear_system().ok_or(Error::Equations)?;
+                Some(RobotEquations::new(&self.robot, model)?)
+            }
+        };
+        Ok(Some(Box::new(Corrected { corrector, equations, near: near.cloned() })))
+    }
+
+    fn near(&self, motion: &[f64]) -> Option<Near> {
+        Some(Arc::new(LoadsNear::along(&self.robot, motion)))
+    }
+
+    fn input_error(&self, case: &Case) -> Result<(Vec<f64>, usize)> {
+        input_error::of_case(self, case)
+    }
+
+    fn is_fitted(&self) -> bool {
+        self.correction.is_some()
+    }
+
+    fn seen(&self) -> &[String] {
+        &self.robot.description().identified_from
+    }
+
+    fn needs_temperatures(&self) -> bool {
+        let correction = self.correction.as_ref();
+        correction.is_some_and(|known| known.reference_temperatures.is_some())
+            || self.robot.warms_by().contains(&WarmingBy::Temperature)
+    }
+
+    fn identity(&self) -> String {
+        let Self { robot, correction, torque, abstraction, expansion_point, equations } = self;
+        let model = (abstraction, expansion_point, equations);
+        json(&(robot.description(), correction, torque, model))
+    }
+
+    fn check_fit(&self, groups: &[Group]) -> Result<()> {
+        let is_friction = |group: &Group| {
+            matches!(group, Group::Viscous | Group::Cubic | Group::Coulomb | Group::WarmUp)
+        };
+        if self.torque == Torque::Link && groups.iter().any(is_friction) {
+            let why = "there is no friction in link torques; fit inertia or payload";
+            return Err(Error::Fit(why.into()));
+        }
+        Ok(())
+    }
+
+    /// Returns the linear model of the same robot about the same point.
+    fn linear(&self, setup: &Setup) -> Result<Setup> {
+        let mut linear = setup.clone();
+        linear.settings.abstraction = Abstraction::default();
+        linear.settings.method = Method::Program;
+        linear.dynamics = system(&self.robot, &linear.settings)?;
+        linear.drive = Arc::new(Self { abstraction: Abstraction::default(), ..self.clone() });
+        Ok(linear)
+    }
+
+    fn parameters(&self, setup: &Setup, asked: &Asked) -> Box<dyn Parameters> {
+        Box::new(ArmParameters::new(self, setup, asked))
+    }
+
+    fn any(&self) -> &dyn Any {
+        self
+    }
+}
+
+/// What is taken off the inputs of an arm along one nominal motion.
+#[derive(Debug)]
+struct Corrected {
+    corrector: Corrector,
+    equations: Option<RobotEquations>,
+    near: Option<Near>,
+}
+
+impl Compensation for Corrected {
+    fn apply(&mut self, k: usize, x: &[f64], u: &mut [f64]) {
+        let (q, qd) = x.split_at(u.len());
+        let near = self.near.as_ref().and_then(|near| near.downcast_ref::<LoadsNear>());
+        self.corrector.take_off(near.map(|loads| (loads, k)), q, &qd[..u.len()], u);
+        if let Some(equations) = &mut self.equations {
+            equations.replace(x, u);
+        }
+    }
+}
+
+fn json(of: &impl serde::Serialize) -> String {
+    serde_json::to_string(of).expect("numbers are finite and keys are strings")
+}
