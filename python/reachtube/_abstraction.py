@@ -102,13 +102,6 @@ class Abstraction:
         """The robot."""
         return Robot.from_dict(self._content["robot"])
 
-    @property
-    def error_bounds(self) -> list[list[float] | None] | None:
-        """For each joint the proved bounds of (forward dynamics minus model), rad/s², in the
-        operating box; ``None`` where none was asked for or found."""
-        remainder = self._content.get("remainder")
-        return None if remainder is None else list(remainder["bounds"])
-
     def formulas(self) -> str:
         """Return the model as formulas, one for each joint."""
         return self._native.formulas()
@@ -183,8 +176,6 @@ def abstract(
     paper_model: Literal[1, 2, 3] = 1,
     order: int = 1,
     expansion: npt.ArrayLike | None = None,
-    box: npt.ArrayLike | None = None,
-    most_boxes: int | None = None,
     progress: Progress = None,
 ) -> Abstraction:
     """Make model 1, 2 or 3 of a robot's forward dynamics, of any order.
@@ -200,11 +191,6 @@ def abstract(
     expansion
         Where the model is expanded: n positions, or 2n positions and velocities, rad and rad/s; 0
         where not given.
-    box
-        Radii of the box about the expansion point over which the model's error is bounded: 3 or 3n
-        numbers, positions, velocities and inputs, rad, rad/s and N m.
-    most_boxes
-        Largest number of parts that the box is cut into.
     progress
         As for `conform`.
 
@@ -220,13 +206,7 @@ def abstract(
         Where the mass matrix is singular, or polynomials of this order do not fit.
     """
     given = [] if expansion is None else finite("expansion", expansion)
-    radii = [] if box is None else finite("box", box)
     kind = whole("paper_model", paper_model, 1, 3)
     power = whole("order", order, 1, MOST_ORDER)
-    most = None if most_boxes is None else whole("most_boxes", most_boxes, 1)
-    if most is not None and not radii:
-        raise SettingError("most_boxes divides the box; give box too")
     with shown(progress, "abstract") as tell:
-        return Abstraction(
-            _reachtube.Abstraction(native_of(robot), kind, power, given, radii, most, tell)
-        )
+        return Abstraction(_reachtube.Abstraction(native_of(robot), kind, power, given, tell))

@@ -196,7 +196,7 @@ def identify(
         ``prepare={"cut_off": 5.0}``.
     model
         Settings of the model by their names in the TOML file's section, for example
-        ``model={"stribeck": True}``.
+        ``model={"saturating": False}``.
     torque
         What the recorded torques are: ``"motor"`` (motor torque at the output side of the gear) or
         ``"link"`` (link-side torque, which does not drive the motors' inertia); as the settings say

@@ -188,8 +188,6 @@ class Abstraction:
         model: int,
         order: int,
         expansion: list[float],
-        radii: list[float],
-        most_boxes: int | None = None,
         progress: _Progress = None,
     ) -> Abstraction: ...
     @staticmethod

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use rayon::prelude::*;
-use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
 
 use crate::arrays::{Input, Output, array, values};
 use crate::failure::{Failure, Result};
@@ -20,33 +20,22 @@ pub(crate) struct NativeAbstraction {
 
 #[pymethods]
 impl NativeAbstraction {
-    /// Makes a model of a robot; `radii` of an operating box, 3 or 3n, bound its error there.
+    /// Makes a model of a robot.
     #[new]
-    #[pyo3(signature = (robot, model, order, expansion, radii, most_boxes=None, progress=None))]
-    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (robot, model, order, expansion, progress=None))]
     fn new(
         py: Python<'_>,
         robot: PyRef<'_, NativeRobot>,
         model: u32,
         order: u32,
         expansion: Vec<f64>,
-        radii: Vec<f64>,
-        most_boxes: Option<usize>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let robot = Arc::clone(&robot.robot);
         watched(py, progress.as_ref(), move |_| {
             robot.check_physical()?;
             let point = ExpansionPoint::from_values(&expansion, robot.joint_count())?;
-            let mut made =
-                PolynomialModel::new(&robot, ModelKind::try_from(model)?, order, &point)?;
-            if !radii.is_empty() {
-                let operating_box = OperatingBox::about(&point, &radii)?;
-                let most = most_boxes.unwrap_or_else(|| made.default_max_boxes());
-                let remainder = made.bound_remainder(&operating_box, most)?;
-                made.set_remainder(remainder);
-            }
-            Ok(made)
+            Ok(PolynomialModel::new(&robot, ModelKind::try_from(model)?, order, &point)?)
         })
         .map(|model| Self { model: Arc::new(model) })
     }

@@ -150,9 +150,7 @@ impl From<reachtube::abstraction::Error> for Failure {
             reachtube::abstraction::Error::ModelFile { .. } => Self::ModelFile(text),
             reachtube::abstraction::Error::OrderZero
             | reachtube::abstraction::Error::UnknownModel { .. }
-            | reachtube::abstraction::Error::ExpansionPointSize { .. }
-            | reachtube::abstraction::Error::Radius { .. }
-            | reachtube::abstraction::Error::RadiusCount { .. } => Self::Setting(text),
+            | reachtube::abstraction::Error::ExpansionPointSize { .. } => Self::Setting(text),
             _ => Self::Other(text),
         }
     }

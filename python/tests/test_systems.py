@@ -32,19 +32,6 @@ def test_an_abstraction_is_evaluated_over_arrays(robot: rt.Robot, tmp_path: Path
         made.rate(x[..., :12], u)
 
 
-def test_the_error_of_an_abstraction_is_bounded(robot: rt.Robot) -> None:
-    made = rt.abstract(robot, paper_model=1, order=1, box=[0.05, 0.1, 1.0], most_boxes=4)
-    bounds = made.error_bounds
-    assert bounds is not None and len(bounds) == 6
-    random = np.random.default_rng(5)
-    q, qd, u = (size * random.uniform(-1, 1, (2000, 6)) for size in (0.05, 0.1, 1.0))
-    exact = robot.aba(q, qd, u - robot.viscous_friction(qd) + robot.gravity(q))
-    error = exact - made.rate(made.state(q, qd), u)[:, 6:12]
-    for joint, bound in enumerate(bounds):
-        assert bound is not None
-        assert bound[0] <= error[:, joint].min() and error[:, joint].max() <= bound[1]
-
-
 def test_a_flowpipe_holds_sampled_trajectories() -> None:
     q, qd, u = rt.variables("q qd u")
     t = np.linspace(0.0, 1.0, 201)
@@ -207,8 +194,6 @@ def test_wrong_settings_of_a_motion_are_named(
         ({"order": 2**40}, "order is 1099511627776"),
         ({"order": 1.5}, "order is 1.5 of type float"),
         ({"paper_model": 4}, "paper_model is 4; give 1 to 3"),
-        ({"most_boxes": -1, "box": [0.1, 0.1, 1.0]}, "most_boxes is -1"),
-        ({"most_boxes": 4}, "give box too"),
     ],
 )
 def test_wrong_settings_of_an_abstraction_are_named(

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use reachtube_reach::ReachError;
 use thiserror::Error;
 
-/// Why a model could not be built, read or bounded.
+/// Why a model could not be built or read.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -69,52 +69,6 @@ pub enum Error {
         values: usize,
         /// Number of joints n.
         joints: usize,
-    },
-    /// A radius of an operating box is negative, NaN or infinite.
-    #[error("radius {number} of the box is {value}; give finite numbers, 0 or more")]
-    Radius {
-        /// Which radius, from 1.
-        number: usize,
-        /// The radius.
-        value: f64,
-    },
-    /// An operating box has another number of radii than 3 or 3n.
-    #[error(
-        "the box has {radii} radii; give 3 (positions in rad or m, velocities per s, inputs in \
-         N m or N) or {}",
-        3 * joints
-    )]
-    RadiusCount {
-        /// Number of radii given.
-        radii: usize,
-        /// Number of joints n.
-        joints: usize,
-    },
-    /// An operating box does not have one finite interval per joint for q, q̇ and u.
-    #[error(
-        "the operating box does not fit a robot of {joints} joints; give {joints} finite \
-         intervals, low end first, for each of q, qd and u"
-    )]
-    BoxSize {
-        /// Number of joints n.
-        joints: usize,
-    },
-    /// An operating box reaches beyond the limits of a joint.
-    #[error(
-        "joint `{joint}`: the box has {quantity} in {side:?} {unit}, beyond the limits {limits:?} \
-         of the robot; choose a smaller box"
-    )]
-    BeyondLimits {
-        /// Name of the joint.
-        joint: String,
-        /// Positions or velocities.
-        quantity: &'static str,
-        /// Unit of `side` and `limits`.
-        unit: &'static str,
-        /// The side of the box, \[low, high\].
-        side: [f64; 2],
-        /// The limits of the joint, \[low, high\].
-        limits: [f64; 2],
     },
     /// A model that should be linear in (q̇, u) has another term.
     #[error(

@@ -12,7 +12,6 @@ use crate::expansion_point::ExpansionPoint;
 use crate::model_kind::ModelKind;
 use crate::polynomial_model::PolynomialModel;
 use crate::records::{Records, TermRecord};
-use crate::remainder::Remainder;
 
 /// Name of the format.
 const FORMAT: &str = "reachtube-abstraction";
@@ -34,8 +33,6 @@ struct ModelFile {
     variables: Vec<String>,
     /// The point from which the terms count offsets, one value per variable.
     origin: Vec<f64>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    remainder: Option<Remainder>,
     robot: RobotDescription,
     /// Terms of the acceleration of each joint, rad/s².
     acceleration: Vec<Vec<TermRecord>>,
@@ -56,7 +53,6 @@ impl PolynomialModel {
             expansion_point: self.expansion_point().clone(),
             variables,
             origin,
-            remainder: self.remainder().cloned(),
             robot: self.robot().clone(),
             acceleration,
         })
@@ -93,22 +89,10 @@ impl ModelFile {
             problem: format!("{problem}; {REMEDY}"),
         };
         let robot = Robot::from_description(&self.robot)?;
-        let n = robot.joint_count();
-        if let Some(remainder) = self.remainder.as_ref().filter(|r| !r.is_valid_for(n)) {
-            return Err(wrong(format!(
-                "its remainder has {} bounds for {n} joints, or a box that does not fit them",
-                remainder.bounds.len()
-            )));
-        }
         let abstraction = Abstraction { model: self.model, order: self.order };
         let Self { variables, origin, acceleration, .. } = self;
         let records = Records { variables, origin, acceleration };
-        let mut model =
-            PolynomialModel::from_records(&robot, abstraction, &self.expansion_point, records)
-                .map_err(|error| wrong(error.to_string()))?;
-        if let Some(remainder) = self.remainder {
-            model.set_remainder(remainder);
-        }
-        Ok(model)
+        PolynomialModel::from_records(&robot, abstraction, &self.expansion_point, records)
+            .map_err(|error| wrong(error.to_string()))
     }
 }

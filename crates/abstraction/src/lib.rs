@@ -1,21 +1,19 @@
-//! Simple models of a robot's forward dynamics, with a proved bound of their truncation error.
+//! Simple models of a robot's forward dynamics.
 //!
 //! A reachable-set computation needs a model ẋ = f_p(x, u) that is linear or polynomial. This crate
 //! builds the three models of Liu and Althoff (IROS 2018, Sec. IV-B) from a
 //! [`Robot`](reachtube_robot::Robot), at any order p and about any [`ExpansionPoint`].
 //!
-//! - [`PolynomialModel`] is the primary type: it evaluates f_p over numbers, SIMD lanes, intervals
-//!   and Taylor models, and reads and writes its file. [`ModelKind`] chooses the model.
+//! - [`PolynomialModel`] is the primary type: it evaluates f_p over numbers, SIMD lanes and
+//!   intervals, and reads and writes its file. [`ModelKind`] chooses the model.
 //! - [`linear_model`] returns model 1 of order 1 as a linear system.
-//! - [`PolynomialModel::bound_remainder`] encloses the truncation error, forward dynamics minus
-//!   model, over an [`OperatingBox`] and returns it as a [`Remainder`].
 //! - [`ModelField`] simulates a model, and [`Linearisation`] differentiates it along a motion.
 //!   A model is a [`Nonlinear`](reachtube_reach::Nonlinear) system, which flowpipes enclose.
 //!
 //! # Examples
 //!
 //! ```
-//! use reachtube_abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+//! use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
 //! use reachtube_robot::Robot;
 //!
 //! let point = ExpansionPoint::zero(6);
@@ -24,20 +22,11 @@
 //! // Accelerations of the joints (rad/s²) under 1 N m each, from rest at q = 0.1 rad.
 //! let rate = model.rate(&model.state(&[0.1; 6], &[0.0; 6]), &[1.0; 6]);
 //! assert!(rate[6..12].iter().all(|acceleration| acceleration.is_finite()));
-//!
-//! // A bound of the truncation error within 0.1 rad, 0.1 rad/s and 1 N m of the point.
-//! let operating_box = OperatingBox::about(&point, &[0.1, 0.1, 1.0])?;
-//! let remainder = model.bound_remainder(&operating_box, 16)?;
-//! let [low, high] = remainder.bounds[0].expect("the box is small enough for a bound");
-//! assert!(low <= 0.0 && 0.0 <= high);
 //! # Ok::<(), reachtube_abstraction::Error>(())
 //! ```
 
 mod abstraction;
-mod bound;
 mod build;
-mod cut;
-mod equations;
 mod error;
 mod expansion_point;
 mod field;
@@ -49,24 +38,16 @@ mod linear_model;
 mod linearisation;
 mod model_kind;
 mod nonlinear;
-mod operating_box;
 mod polynomial_model;
-mod preconditioned;
 mod records;
-mod remainder;
-mod sampled_error;
 mod systems;
-mod taylor_order;
 
 pub use abstraction::Abstraction;
 pub use error::{Error, RecordsError};
 pub use expansion_point::ExpansionPoint;
 pub use field::ModelField;
-pub use layout::Layout;
 pub use linear_model::linear_model;
 pub use linearisation::Linearisation;
 pub use model_kind::ModelKind;
-pub use operating_box::OperatingBox;
-pub use polynomial_model::{ModelWorkspace, PolynomialModel};
+pub use polynomial_model::PolynomialModel;
 pub use records::{Records, TermRecord};
-pub use remainder::Remainder;

@@ -9,7 +9,6 @@ use reachtube_scalar::{MapWorkspace, PolynomialMap, Powers, TaylorPolynomial};
 use crate::expansion_point::ExpansionPoint;
 use crate::layout::Layout;
 use crate::model_kind::ModelKind;
-use crate::remainder::Remainder;
 
 /// An abstraction of the forward dynamics (10): ẋ = f_p(x, u), polynomial in x and u, in rad, s and
 /// N m, or m, s and N for a prismatic joint.
@@ -44,7 +43,6 @@ pub struct PolynomialModel {
     acceleration: Vec<TaylorPolynomial>,
     map: PolynomialMap,
     robot: RobotDescription,
-    remainder: Option<Remainder>,
     /// The polynomials as flowpipes take them, made when first asked for.
     pub(crate) system: OnceLock<PolynomialSystem>,
 }
@@ -79,7 +77,6 @@ impl PolynomialModel {
             acceleration,
             map,
             robot,
-            remainder: None,
             system: OnceLock::new(),
         }
     }
@@ -162,17 +159,6 @@ impl PolynomialModel {
     #[must_use]
     pub fn robot(&self) -> &RobotDescription {
         &self.robot
-    }
-
-    /// Returns the bound of the truncation error, where one was computed.
-    #[must_use]
-    pub fn remainder(&self) -> Option<&Remainder> {
-        self.remainder.as_ref()
-    }
-
-    /// Stores a bound of the truncation error with the model, and so in its file.
-    pub fn set_remainder(&mut self, remainder: Remainder) {
-        self.remainder = Some(remainder);
     }
 
     /// Returns the state of the model at positions `q` (n, rad or m) and velocities `qd` (n, rad/s

@@ -182,7 +182,7 @@ pub(crate) enum Error {
     },
     /// `export` has no model for a tool.
     #[error(
-        "only mjcf, urdf and armour take --robot; name a model that `model` or `conform` wrote \
+        "only mjcf and urdf take --robot; name a model that `model` or `conform` wrote \
          with --model"
     )]
     NoModel,

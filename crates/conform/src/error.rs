@@ -1,7 +1,6 @@
 use std::path::PathBuf;
 
 use reachtube_reach::ReachError;
-use reachtube_recordings::State;
 use thiserror::Error;
 
 use crate::advice::{Advice, advised};
@@ -41,32 +40,6 @@ pub enum Error {
         /// The lowest value allowed.
         low: f64,
         /// The highest value allowed.
-        high: f64,
-    },
-    /// The error of a model has no bound over its operating box.
-    #[error(
-        "the model's error in the acceleration of joint {joint} has no bound over its box; give \
-         `abstract` a smaller box, or let it cut the box into more parts, or give no box at all"
-    )]
-    Unbounded {
-        /// The joint, from 1.
-        joint: usize,
-    },
-    /// A recording starts outside the box over which the model's error was bounded.
-    #[error(
-        "{file}: {state} starts at {value}, outside the box [{low}, {high}] over which the model's \
-         error was bounded; give `abstract` a larger box, or expand the model elsewhere"
-    )]
-    StartsOutsideBox {
-        /// The recording.
-        file: String,
-        /// The state.
-        state: State,
-        /// Its first value, rad or rad/s.
-        value: f64,
-        /// The lower side of the box.
-        low: f64,
-        /// The upper side of the box.
         high: f64,
     },
     /// A recording is not the one that was read first.
@@ -163,8 +136,6 @@ impl Error {
     #[must_use]
     pub(crate) fn settings(&self) -> Vec<Setting> {
         match self {
-            Self::Unbounded { .. } => vec![Setting::new("box", ""), Setting::new("most-boxes", "")],
-            Self::StartsOutsideBox { .. } => vec![Setting::new("box", "")],
             Self::Equations => vec![Setting::new("equations", "model")],
             Self::NotPoints => vec![Setting::new("notion", "exact")],
             Self::Calibration(advice) | Self::Fold(advice) => advice.settings.clone(),

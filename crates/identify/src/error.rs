@@ -28,18 +28,6 @@ pub enum Error {
         /// Its value.
         value: f64,
     },
-    /// A law of friction was asked for whose quantity a recording does not know.
-    #[error(
-        "{log}: friction by {quantity} needs it for all friction and exciting motions; give the \
-         columns temp1..tempn for a law of temperature, or {{ path = .., order = 3 }} for a law of \
-         runs, or set warming = \"none\""
-    )]
-    UnknownWarmth {
-        /// The recording.
-        log: String,
-        /// The quantity.
-        quantity: &'static str,
-    },
     /// The number of gains differs from the number of joints.
     #[error(
         "gains: {given} given; give one for each of the {joints} joints, in the order of the \

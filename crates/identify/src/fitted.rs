@@ -1,4 +1,4 @@
-//! A robot fitted to recordings, with the laws of friction that the sampling knows.
+//! A robot fitted to recordings.
 
 use crate::error::{Error, Result};
 use crate::friction::joints::coefficients;
@@ -16,12 +16,12 @@ use crate::plausibility::offset::{OffsetSearch, PositionOffset};
 use crate::plausibility::warnings::Checked;
 use crate::prepare::log::PreparedLog;
 use crate::samples::{KnownTorque, Samples};
-use crate::settings::{ModelSettings, WarmingChoice};
+use crate::settings::ModelSettings;
 use crate::stiction::KnownFriction;
 use crate::variant::{set_gravity_moments, with_friction};
 use reachtube_robot::{FrictionDescription, Robot, RobotDescription};
 
-/// A fitted robot. Its friction is that at the reference of the laws of the sampling.
+/// A fitted robot.
 pub(crate) struct Fitted {
     /// Gravity and friction of slow motions.
     pub first: GravityAndFriction,
@@ -148,7 +148,7 @@ fn fit_links(
         found = fit(chosen.collect())?;
     }
     let is_dry = model.motor_inertia && !inputs.compensated;
-    if !(model.saturating && is_dry && model.warming == WarmingChoice::None) {
+    if !(model.saturating && is_dry) {
         return Ok(found);
     }
     let mut tried = saturating([robot, &found.known], &found.inertia, inputs);

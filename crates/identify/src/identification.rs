@@ -7,20 +7,17 @@ use crate::inertia::description::friction_errors;
 use crate::inertia::fit::InertiaFit;
 use crate::inertia::saturation::SaturatingFriction;
 use crate::inputs::Inputs;
-use crate::law_gain::{LawGain, held_out_residuals};
 use crate::plausibility::gain::Gain;
 use crate::plausibility::implausible::Implausible;
 use crate::plausibility::offset::PositionOffset;
 use crate::plausibility::validation::{
     costly_links, poor_prediction, still_recordings, useless_simulation,
 };
-use crate::settings::{IdentifySettings, ModelSettings, WarmingChoice};
+use crate::settings::{IdentifySettings, ModelSettings};
 use crate::stiction::unknown_sides;
 use crate::validate::simulation::{WindowErrors, simulate};
 use crate::validate::torque::{LogValidation, TorqueTrace, predict_torque};
 use crate::variant::with_gravity_of_links;
-use crate::warming::choice::WarmingFit;
-use crate::warming::laws::{fit_warming, law_warnings};
 use reachtube_robot::{FrictionDescription, Parameter, ParameterKind, Robot, RobotDescription};
 use std::path::Path;
 
@@ -48,10 +45,6 @@ pub struct Identification {
     pub gains: Vec<Gain>,
     /// Offsets of the joints' positions that explain the torque best; empty for too few samples.
     pub offsets: Vec<PositionOffset>,
-    /// Laws by which friction falls while the joints warm up, if they were asked for.
-    pub warming: Option<WarmingFit>,
-    /// Torque residuals without and with the friction laws, if some were asked for.
-    pub laws: Option<LawGain>,
     /// Errors of the predicted torque in the validation recordings.
     ///
     /// Without validation recordings they are the errors in the exciting motions.
@@ -96,25 +89,19 @@ pub fn identify(
     progress(1, STEPS);
 
     // Gravity and friction in turn, then the inertial parameters.
-    let plain = ModelSettings { stribeck: false, ..model.clone() };
-    let mut fitted = Fitted::new(robot, &inputs, &plain)?;
+    let fitted = Fitted::new(robot, &inputs, model)?;
     progress(2, STEPS);
 
-    // Friction laws, and everything anew with the ones that were chosen.
-    let (warming, laws) = fit_laws(robot, &mut inputs, model, &mut fitted, &plain)?;
     let Plausibility { gains, offsets, warnings: implausible } = fitted.check(robot, &inputs);
     let sides = fitted.first.gravity.as_ref().map_or(&[][..], |gravity| &gravity.poses.sides);
     inputs.changes.extend(unknown_sides(sides, robot.joint_count()));
-    let law_warnings = law_warnings(model, &inputs, &fitted, warming.as_ref());
-    let gain_warnings = laws.iter().flat_map(|laws| laws.warnings(robot)).collect();
     let Fitted { first, friction, known, inertia, saturating, mut description, found } = fitted;
     add_friction(&mut description, &inputs, &friction, &first.friction, &inertia);
-    let warming_robot = Robot::from_description(&description)?;
     progress(3, STEPS);
     let (held_out, tried) = inputs.validation();
     let (validation, traces) = predict_torque(&found, &known, tried, &inputs.sampling, &inertia);
-    let windows = simulate(&warming_robot, tried, &model.windows);
-    let mut warnings = [inputs.warnings, first.warnings, law_warnings, gain_warnings].concat();
+    let windows = simulate(&found, tried, &model.windows);
+    let mut warnings = [inputs.warnings, first.warnings].concat();
     warnings.extend(implausible.iter().map(|result| result.text.clone()));
     warnings.extend(inertia_warnings(&first.friction, (&inertia, &saturating), robot));
     let links = inertia.physical.is_some() && !model.separate_gravity;
@@ -131,8 +118,6 @@ pub fn identify(
         saturating,
         gains,
         offsets,
-        warming,
-        laws,
         validation,
         held_out,
         windows,
@@ -156,30 +141,8 @@ fn keep_motors(
     }
 }
 
-/// Fits the friction laws that `model` asks for beyond `plain`, and everything anew with the ones
-/// that were chosen. Returns them with what they gain.
-fn fit_laws(
-    robot: &Robot,
-    inputs: &mut Inputs,
-    model: &ModelSettings,
-    fitted: &mut Fitted,
-    plain: &ModelSettings,
-) -> Result<(Option<WarmingFit>, Option<LawGain>)> {
-    let before = (plain != model || model.warming != WarmingChoice::None)
-        .then(|| held_out_residuals(fitted, inputs));
-    if model.stribeck && !inputs.friction.is_empty() {
-        *fitted = Fitted::new(robot, inputs, model)?;
-    }
-    let warming = fit_warming(robot, inputs, model, fitted)?;
-    let laws = before.map(|before| {
-        let after = held_out_residuals(fitted, inputs);
-        LawGain { held_out: inputs.validation().0, before, after }
-    });
-    Ok((warming, laws))
-}
-
-/// Writes the laws of warming up, the standard errors of friction, the velocities that it was
-/// fitted to, and the recordings of all fits into the description.
+/// Writes the standard errors of friction, the velocities that it was fitted to, and the recordings
+/// of all fits into the description.
 fn add_friction(
     description: &mut RobotDescription,
     inputs: &Inputs,
@@ -188,9 +151,6 @@ fn add_friction(
     inertia: &InertiaFit,
 ) {
     description.add_identified_from(inputs.seen.iter().cloned());
-    for (joint, law) in description.joints.iter_mut().zip(&inputs.sampling.laws) {
-        joint.friction.warming = *law;
-    }
     for (j, joint) in description.joints.iter_mut().enumerate() {
         let is_own = |fit: &&FrictionFit| {
             fit.joint.joint == joint.name && fit.joint.coefficients == friction[j]

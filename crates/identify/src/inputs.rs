@@ -102,7 +102,6 @@ impl Inputs {
             rate: SAMPLES_PER_CUT_OFF * cut_off,
             slow: slow_speeds(&moving, robot.joint_count(), model.slow),
             margin,
-            laws: vec![],
             velocities: velocities(&moving, robot.joint_count()),
         };
         notes.extend(described_changes(samples, &changes, prepare, cut_off));

@@ -35,7 +35,7 @@
 //!
 //! 1. [`prepare`] reads recordings, samples them evenly, filters them without phase shift,
 //!    differentiates them, and cuts them into windows.
-//! 2. Gravity is fitted to poses at rest and slow motions ([`GravityFit`]). `friction` fits
+//! 2. Gravity is fitted to poses at rest and slow motions (`GravityFit`). `friction` fits
 //!    friction (5) to (9) to slow motions, with the gravity torque as its load. The two alternate.
 //! 3. The inertial parameters are fitted to exciting motions ([`InertiaFit`]). [`bodies`] finds the
 //!    physically consistent links nearest to the data.
@@ -55,7 +55,6 @@ mod held_out;
 mod identification;
 mod inertia;
 mod inputs;
-mod law_gain;
 mod plausibility;
 pub mod prepare;
 mod regression;
@@ -65,23 +64,16 @@ mod stiction;
 mod summary;
 mod validate;
 mod variant;
-mod warming;
 
 pub use error::Error;
 pub use fit::{Fit, JointFit};
 pub use friction::falling::FallingFriction;
 pub use friction::fit::{FrictionFit, JointFriction};
 pub use friction::form::CoulombForm;
-pub use friction::sample::FrictionSample;
-pub use friction::stribeck::StribeckTrial;
-pub use gravity::GravityFit;
 pub use identification::{Identification, identify};
-pub use inertia::{BaseParameter, InertiaFit, JointInertia, PhysicalFit, SaturatingFriction};
-pub use law_gain::LawGain;
+pub use inertia::{BaseParameter, InertiaFit, PhysicalFit, SaturatingFriction};
 pub use plausibility::{Gain, Implausible, PositionOffset, WrongColumns};
-pub use regression::solution::Solution;
 pub use regression::triangular_factor::TriangularFactor;
-pub use settings::{IdentifySettings, ModelSettings, Prior, WarmingChoice};
+pub use settings::{IdentifySettings, ModelSettings};
 pub use summary::Summary;
 pub use validate::{JointError, LogValidation, TorqueTrace, WindowErrors};
-pub use warming::{JointWarming, WarmingCandidate, WarmingFit};

@@ -4,7 +4,6 @@ use crate::regression::triangular_factor::TriangularFactor;
 use crate::stiction::{self, KnownFriction, Rests};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use reachtube_robot::friction::Warming;
 use reachtube_robot::{Parameter, ParameterKind, Regressor, Robot};
 use std::ops::Range;
 
@@ -55,8 +54,6 @@ pub(crate) struct Sampling {
     pub slow: Vec<f64>,
     /// Time before and after a slow sample in which a joint's row is not used \[s\].
     pub margin: f64,
-    /// Laws by which friction changes while the joints warm up, n entries; empty for none.
-    pub laws: Vec<Option<Warming>>,
     /// Lowest and highest velocity of each joint in slow and in exciting motions \[rad/s\].
     pub velocities: Vec<[f64; 2]>,
 }
@@ -78,18 +75,6 @@ impl Sampling {
     /// Returns the number of samples of a log from one that is used to the next.
     pub(crate) fn stride(&self, log: &PreparedLog) -> usize {
         (1.0 / (self.rate * log.step)).floor().max(1.0) as usize
-    }
-
-    /// Returns the factors of Coulomb and viscous friction at sample k of a log, n entries, and
-    /// nothing without laws.
-    ///
-    /// Friction has its value at the reference where a log does not know its warmth.
-    pub(crate) fn factors(&self, log: &PreparedLog, k: usize) -> Vec<[f64; 2]> {
-        let of_joint = |(joint, law): (usize, &Option<Warming>)| {
-            let known = law.and_then(|law| Some(law.factors(log.warmth_value(law.by, joint, k)?)));
-            known.unwrap_or([1.0; 2])
-        };
-        self.laws.iter().enumerate().map(of_joint).collect()
     }
 }
 
@@ -126,7 +111,7 @@ impl Samples {
         let moves = log.moving_mask(&sampling.slow, sampling.margin);
         for k in kept {
             let state = [log.q(k), log.qd(k), log.qdd(k)];
-            samples.push(&mut regressor, state, log.tau(k), known, &sampling.factors(log, k));
+            samples.push(&mut regressor, state, log.tau(k), known);
             samples.used.extend_from_slice(&moves[k * log.joints..(k + 1) * log.joints]);
             samples.times.push(log.time(k));
         }
@@ -162,7 +147,7 @@ impl Samples {
                     (0..n).map(|joint| sum(joint) / quiet.len() as f64).collect()
                 };
                 let (q, tau) = (mean(&log.q), mean(&log.tau));
-                all.push(&mut regressor, [&q, &still, &still], &tau, &KnownTorque::None, &[]);
+                all.push(&mut regressor, [&q, &still, &still], &tau, &KnownTorque::None);
                 all.used.extend(vec![true; n]);
                 rests.q.extend(q);
                 rests.tau.extend(tau);
@@ -222,37 +207,17 @@ impl Samples {
         [q, qd, qdd]: [&[f64]; 3],
         tau: &[f64],
         known: &KnownTorque,
-        factors: &[[f64; 2]],
     ) {
         let at = self.regressor.len();
         self.regressor.resize(at + self.joints * self.columns.len(), 0.0);
         if !self.columns.is_empty() {
             regressor.fill(q, qd, qdd, &mut self.regressor[at..]);
         }
-        if !factors.is_empty() {
-            self.scale_friction(at, factors);
-        }
-        let known = known.torque([q, qd, qdd], factors);
+        let known = known.torque([q, qd, qdd]);
         self.recorded.extend_from_slice(tau);
         self.torque.extend(
             tau.iter().enumerate().map(|(j, tau)| tau - known.as_ref().map_or(0.0, |k| k[j])),
         );
-    }
-
-    /// Multiplies the friction columns of the rows from index `at` of the regressor by the factors
-    /// of Coulomb and viscous friction, n entries.
-    fn scale_friction(&mut self, at: usize, factors: &[[f64; 2]]) {
-        for row in self.regressor[at..].chunks_exact_mut(self.columns.len().max(1)) {
-            for (value, column) in row.iter_mut().zip(&self.columns) {
-                *value *= match column.kind {
-                    ParameterKind::Coulomb | ParameterKind::Offset => factors[column.joint][0],
-                    ParameterKind::Viscous1 | ParameterKind::Viscous2 | ParameterKind::Viscous3 => {
-                        factors[column.joint][1]
-                    }
-                    _ => 1.0,
-                };
-            }
-        }
     }
 
     fn joined(joints: usize, columns: &[Parameter], parts: Vec<Self>) -> Self {
@@ -336,18 +301,9 @@ pub(crate) enum KnownTorque<'a> {
 }
 
 impl KnownTorque<'_> {
-    /// Returns the torque of all joints \[N m\]. Coulomb and viscous friction have these factors, n
-    /// entries, or none.
-    fn torque(&self, [q, qd, qdd]: [&[f64]; 3], factors: &[[f64; 2]]) -> Option<DVector<f64>> {
-        let friction = |robot: &Robot| {
-            let (mut coulomb, mut viscous) =
-                (robot.coulomb_torque(q, qd), robot.viscous_torque(qd));
-            for (j, [c, v]) in factors.iter().enumerate() {
-                coulomb[j] *= c;
-                viscous[j] *= v;
-            }
-            coulomb + viscous
-        };
+    /// Returns the torque of all joints \[N m\].
+    fn torque(&self, [q, qd, qdd]: [&[f64]; 3]) -> Option<DVector<f64>> {
+        let friction = |robot: &Robot| robot.coulomb_torque(q, qd) + robot.viscous_torque(qd);
         match self {
             Self::None => None,
             Self::Friction(robot) => Some(friction(robot)),

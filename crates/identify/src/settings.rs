@@ -1,7 +1,6 @@
 use crate::error::{Error, Result};
 use crate::prepare::entry::LogEntry;
 use crate::prepare::settings::PrepareSettings;
-use reachtube_robot::friction::WarmingBy;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -84,47 +83,13 @@ pub struct ModelSettings {
     pub prior_strength: f64,
     /// Whether gravity keeps its own mass moments from the gravity fit, as in the paper.
     pub separate_gravity: bool,
-    /// Whether the rise of dry friction toward standstill is tried on the slow motions (Stribeck
-    /// effect).
-    pub stribeck: bool,
     /// Whether friction that saturates is tried on the exciting motions: dry friction that builds
     /// up with speed, in place of viscous friction that bends.
     ///
-    /// It is not tried on inputs or torques without the motors' friction, nor beside laws of
-    /// warming.
+    /// It is not tried on inputs or torques without the motors' friction.
     pub saturating: bool,
-    /// Which laws are tried by which friction falls while the joints warm up.
-    pub warming: WarmingChoice,
     /// Durations of the forward simulations over the validation recordings \[s\].
     pub windows: Vec<f64>,
-}
-
-/// The laws that are tried by which friction falls while the joints warm up. Held-out recordings
-/// decide which of them is used, if any.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum WarmingChoice {
-    /// None.
-    #[default]
-    None,
-    /// Laws of the recorded temperature, which all motions need.
-    Temperature,
-    /// Laws of the number of runs since the start, which all motions need.
-    Runs,
-    /// All laws that the recordings allow.
-    Compare,
-}
-
-impl WarmingChoice {
-    /// Returns the quantities that friction may depend on.
-    pub(crate) fn quantities(self) -> &'static [WarmingBy] {
-        match self {
-            Self::None => &[],
-            Self::Temperature => &[WarmingBy::Temperature],
-            Self::Runs => &[WarmingBy::Runs, WarmingBy::Thermal],
-            Self::Compare => &[WarmingBy::Temperature, WarmingBy::Runs, WarmingBy::Thermal],
-        }
-    }
 }
 
 /// The prior of the links in directions that the recordings do not determine.
@@ -151,9 +116,7 @@ impl Default for ModelSettings {
             prior: Prior::Description,
             prior_strength: 1.0,
             separate_gravity: false,
-            stribeck: false,
             saturating: true,
-            warming: WarmingChoice::None,
             windows: vec![0.5, 1.0, 2.0],
         }
     }

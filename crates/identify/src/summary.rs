@@ -3,15 +3,13 @@ use crate::friction::falling::FallingFriction;
 use crate::friction::fit::JointFriction;
 use crate::gravity::fit::GravityFit;
 use crate::identification::Identification;
-use crate::inertia::JointInertia;
 use crate::inertia::base::BaseParameter;
+use crate::inertia::diagonal::JointInertia;
 use crate::inertia::physical::PhysicalFit;
-use crate::law_gain::LawGain;
 use crate::plausibility::gain::Gain;
 use crate::plausibility::offset::PositionOffset;
 use crate::validate::simulation::WindowErrors;
 use crate::validate::torque::LogValidation;
-use crate::warming::choice::WarmingFit;
 use reachtube_robot::RobotDescription;
 use serde::Serialize;
 
@@ -48,12 +46,6 @@ pub struct Summary<'a> {
     pub gains: &'a [Gain],
     /// Offsets of the joints' positions that explain the torque best; empty for too few samples.
     pub offsets: &'a [PositionOffset],
-    /// Laws by which friction falls while the joints warm up, if they were asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub warming: &'a Option<WarmingFit>,
-    /// Torque residuals without and with the friction laws, if some were asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub laws: &'a Option<LawGain>,
     /// Errors of the predicted torque in the validation recordings.
     pub validation: &'a [LogValidation],
     /// Whether there were validation recordings, to which nothing was fitted.
@@ -83,8 +75,6 @@ impl Identification {
             falling: &self.inertia.falling,
             gains: &self.gains,
             offsets: &self.offsets,
-            warming: &self.warming,
-            laws: &self.laws,
             validation: &self.validation,
             held_out: self.held_out,
             windows: &self.windows,

@@ -10,7 +10,6 @@ mod step_control;
 mod tableau;
 mod vector_field;
 
-pub use dense_step::DenseStep;
 pub use dormand_prince::DormandPrince;
 pub use ensemble::Ensemble;
 pub use outcome::{Cause, Outcome};

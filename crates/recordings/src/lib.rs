@@ -89,4 +89,4 @@ pub use sensor_noise::noise_deviations;
 pub use source::{ReadOptions, RunSource, SuiteEntry};
 pub use state::{State, StateKind, StateNameError};
 pub use torque::Torque;
-pub use units::{check_limits, integral_gap, velocity_mismatch};
+pub use units::{check_limits, integral_gap};

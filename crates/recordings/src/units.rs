@@ -29,8 +29,7 @@ const UNIT_TOLERANCE: f64 = 0.3;
 
 /// Returns each joint (from 0) whose q does not follow ∫q̇ dt, with the slope of q over ∫q̇ dt
 /// where this is implausible. Joints that hardly move are skipped.
-#[must_use]
-pub fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
+pub(crate) fn velocity_mismatch(run: &Run) -> Vec<(usize, f64)> {
     let slopes = (0..).zip(positions_per_integrals(run));
     let slopes = slopes.filter_map(|(joint, slope)| Some((joint, slope?)));
     slopes.filter(|(_, slope)| !PLAUSIBLE_RATIO.contains(slope)).collect()

@@ -53,15 +53,6 @@ impl JointKind {
         }
     }
 
-    /// Returns the unit of an acceleration.
-    #[must_use]
-    pub fn acceleration_unit(self) -> &'static str {
-        match self {
-            Self::Revolute => "rad/s^2",
-            Self::Prismatic => "m/s^2",
-        }
-    }
-
     /// Returns the unit of a torque, which is a force for a prismatic joint.
     #[must_use]
     pub fn force_unit(self) -> &'static str {

@@ -50,7 +50,7 @@ pub use description::joint_description::{
 pub use description::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
 pub use error::RobotError;
 pub use excitation::evaluation::Quality;
-pub use excitation::fourier::{FourierTrajectory, MotionSample};
+pub use excitation::fourier::MotionSample;
 pub use excitation::optimise::Excitation;
 pub use excitation::settings::{Criterion, ExcitationSettings};
 pub use field::{DrivenBy, RobotField};
@@ -66,7 +66,6 @@ pub use placement::{Placement, snapped_sin_cos};
 pub use polynomial_dynamics::PolynomialDynamics;
 pub use regressor::Regressor;
 pub use robot::Robot;
-pub use simulate::Trajectory;
 pub use urdf::collision::{CollisionShape, Shape};
 pub use urdf::read::{Urdf, UrdfOptions};
 pub use workspace::Workspace;

@@ -5,8 +5,7 @@ use crate::scalar::Scalar;
 ///
 /// # Guarantee
 ///
-/// Over `Interval` and [`TaylorModel`](crate::TaylorModel), and for coefficients of type
-/// `Interval`: outer enclosures.
+/// Over `Interval`, and for coefficients of type `Interval`: outer enclosures.
 pub trait Elementary: Scalar {
     /// Returns the square root.
     fn sqrt(&self) -> Self;

@@ -16,7 +16,7 @@ mod taylor_model;
 pub use dispatch::{Dispatch, Kernel};
 pub use elementary::Elementary;
 pub use exact_sum::ExactSum;
-pub use interval::{DecimalError, Interval};
+pub use interval::Interval;
 pub use lanes::{Lanes, Lanewise};
 pub use powers::Powers;
 pub use scalar::Scalar;

@@ -6,9 +6,9 @@ use crate::dispatch::Dispatch;
 
 /// A number type over which the dynamics of a robot can be evaluated.
 ///
-/// `f64`, [`Interval`](crate::Interval), SIMD [`Lanes`](crate::Lanes),
-/// [`TaylorPolynomial`](crate::TaylorPolynomial) and [`TaylorModel`](crate::TaylorModel) are
-/// scalars. The trait requires ring operations, division and conversion of constants.
+/// `f64`, [`Interval`](crate::Interval), SIMD [`Lanes`](crate::Lanes) and
+/// [`TaylorPolynomial`](crate::TaylorPolynomial) are scalars. The trait requires ring operations,
+/// division and conversion of constants.
 ///
 /// It does not require sine and cosine. The dynamics take (sin q, cos q) as arguments and can so be
 /// evaluated over independent trigonometric variables (Property A of Liu & Althoff, IROS 2018).

@@ -1,4 +1,4 @@
-use reachtube_abstraction::{Error, ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube_abstraction::{Error, ExpansionPoint, ModelKind, PolynomialModel};
 use reachtube_robot::Robot;
 
 #[test]
@@ -23,14 +23,4 @@ fn expansion_points_that_do_not_fit_are_refused() {
     assert!(matches!(error(&[0.0; 3]), Error::ExpansionPointSize { values: 3, joints: 2 }));
     let text = error(&[0.0, f64::INFINITY]).to_string();
     assert_eq!(text, "value 2 of the expansion point is inf; give finite numbers");
-}
-
-#[test]
-fn boxes_that_do_not_fit_are_refused() {
-    let about = |radii: &[f64]| OperatingBox::about(&ExpansionPoint::zero(2), radii).unwrap_err();
-    assert!(matches!(about(&[1.0; 4]), Error::RadiusCount { radii: 4, joints: 2 }));
-    assert!(matches!(about(&[1.0, -1.0, 1.0]), Error::Radius { number: 2, .. }));
-    let model = crate::common::model(&Robot::lwa4p(), ModelKind::One, 1);
-    let small = OperatingBox::about(&ExpansionPoint::zero(2), &[0.1; 3]).unwrap();
-    assert!(matches!(model.bound_remainder(&small, 1), Err(Error::BoxSize { joints: 6 })));
 }

@@ -1,5 +1,5 @@
 use reachtube_abstraction::{
-    Abstraction, Error, ModelKind, OperatingBox, PolynomialModel, Records, RecordsError,
+    Abstraction, Error, ModelKind, PolynomialModel, Records, RecordsError,
 };
 use reachtube_robot::Robot;
 use reachtube_scalar::TaylorPolynomial;
@@ -23,21 +23,6 @@ fn files_keep_every_bit() {
         );
         assert_eq!((read.kind(), read.order(), read.origin()), (kind, order, model.origin()));
     }
-}
-
-#[test]
-fn files_keep_the_bound_under_its_key() {
-    let robot = Robot::lwa4p();
-    let mut model = model(&robot, ModelKind::One, 1);
-    let operating_box = OperatingBox::about(model.expansion_point(), &[0.1, 0.1, 1.0]).unwrap();
-    let remainder = model.bound_remainder(&operating_box, 4).unwrap();
-    model.set_remainder(remainder.clone());
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("model.json");
-    std::fs::write(&path, model.to_json()).unwrap();
-    let file: serde_json::Value = serde_json::from_str(&model.to_json()).unwrap();
-    assert_eq!(file["remainder"]["seen"].as_array().map(Vec::len), Some(6));
-    assert_eq!(PolynomialModel::load(&path).unwrap().remainder(), Some(&remainder));
 }
 
 #[test]

@@ -1,6 +1,5 @@
 //! The three models against the dynamics that they approximate.
 
-mod bound;
 mod common;
 mod derivatives;
 mod errors;

@@ -1,8 +1,6 @@
 //! Models of an arm with a prismatic joint, against its equations of motion in closed form.
 
-use reachtube_abstraction::{
-    ExpansionPoint, Linearisation, ModelKind, OperatingBox, PolynomialModel,
-};
+use reachtube_abstraction::{ExpansionPoint, Linearisation, ModelKind, PolynomialModel};
 use reachtube_ode::InitialValueProblem;
 use reachtube_reach::{
     Flowpipe, FlowpipeSettings, Hyperrectangle, Nonlinear, TimeGrid, UncertainInput,
@@ -118,34 +116,6 @@ fn derivatives_are_slopes() {
             }
         }
     }
-}
-
-#[test]
-fn truncation_errors_lie_within_their_bounds() {
-    let mut seed = 5;
-    let radii = [0.1, 0.3, 2.0];
-    for (kind, order) in [(ModelKind::One, 1), (ModelKind::Two, 4), (ModelKind::Three, 3)] {
-        let model = model(kind, order);
-        let operating_box = OperatingBox::about(model.expansion_point(), &radii).unwrap();
-        let remainder = model.bound_remainder(&operating_box, 64).unwrap();
-        let bounds: Vec<[f64; 2]> = remainder.bounds.iter().map(|b| b.unwrap()).collect();
-        for _ in 0..5000 {
-            let [dq, qd, u] = radii.map(|radius| numbers(&mut seed, 2, radius));
-            let q = [0.2 + dq[0], 0.6 + dq[1]];
-            let rate = model.rate(&model.state(&q, &qd), &u);
-            let exact = closed_form(q[1], &qd, &u);
-            for i in 0..2 {
-                let (error, [low, high]) = (exact[i] - rate[2 + i], bounds[i]);
-                let rounding = 1e-12;
-                assert!(low - rounding <= error && error <= high + rounding, "{kind:?}: {error}");
-            }
-        }
-        assert!(remainder.sampled_error[0] > 1e-3, "{kind:?}");
-        assert!(largest(bounds[0]) < 2.0 * remainder.sampled_error[0], "{kind:?}: {bounds:?}");
-    }
-    let beyond = OperatingBox::about(&ExpansionPoint::zero(2), &[0.1, 0.3, 2.0]).unwrap();
-    let error = model(ModelKind::One, 1).bound_remainder(&beyond, 4).unwrap_err().to_string();
-    assert!(error.contains("joint `slide`: the box has positions in [-0.1, 0.1] m,"), "{error}");
 }
 
 /// Simulated runs of each model lie in its flowpipe.

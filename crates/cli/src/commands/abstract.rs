@@ -1,11 +1,10 @@
 //! `reachtube abstract`: a simple model of a robot's forward dynamics.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
-use reachtube::abstraction::{ModelKind, OperatingBox, PolynomialModel};
+use reachtube::abstraction::{ModelKind, PolynomialModel};
 use reachtube::write;
 use reachtube_robot::JointKind;
 use serde_json::json;
@@ -16,17 +15,12 @@ use crate::lock_arguments::LockArguments;
 use crate::option_values::{MODELS, numbered_choice};
 use crate::outcome::Outcome;
 use crate::output;
-use crate::progress::Progress;
 use crate::table::table;
-use reachtube::number::{four_decimals, interval, plural};
-use reachtube::units::ColumnUnit;
 
 const HELP: &str = "\
 Examples:
   reachtube abstract --robot lwa4p --paper-model 2 --order 5 --out model2.json
   reachtube abstract --robot lwa4p --expansion 0,0.5,0,0,0,0 --out model1.json
-  reachtube abstract --robot lwa4p --paper-model 3 --order 3 --box 0.2,0.3,2
-      with a proved bound of the model error over the box
 
 `conform --abstraction FILE` finds the uncertainty sets of a model that --out wrote.";
 
@@ -56,17 +50,9 @@ pub(crate) struct Arguments {
     /// [default: 0]
     #[arg(long, value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,..")]
     pub expansion: Vec<f64>,
-    /// Prove a bound of the model error over a box about the expansion point: 3 or 3n radii in rad,
-    /// rad/s and N m
-    #[arg(long = "box", value_delimiter = ',', allow_hyphen_values = true, value_name = "Q,QD,U")]
-    pub operating_box: Vec<f64>,
     /// Print the polynomials, one line per joint, instead of the summary
     #[arg(long, hide_short_help = true, conflicts_with = "json")]
     pub print: bool,
-    /// Largest number of parts that --box is cut into [default: 4 to 1000, for some 20 s on two
-    /// cores]
-    #[arg(long, hide_short_help = true, value_name = "COUNT", requires = "operating_box")]
-    pub most_boxes: Option<usize>,
     /// Write the abstraction to this JSON file
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
@@ -80,19 +66,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::claim(path)?;
     }
     let started = Instant::now();
-    let mut model = PolynomialModel::new(&robot, args.paper_model, args.order, &point)?;
+    let model = PolynomialModel::new(&robot, args.paper_model, args.order, &point)?;
     let seconds = started.elapsed().as_secs_f64();
-    if !args.operating_box.is_empty() {
-        let _bar = Progress::new();
-        let operating_box = OperatingBox::about(&point, &args.operating_box)?;
-        let most = args.most_boxes.unwrap_or_else(|| model.default_max_boxes());
-        let remainder = model.bound_remainder(&operating_box, most)?;
-        if remainder.bounds.iter().any(Option::is_none) {
-            let narrower = model.narrower_box(&operating_box, most)?;
-            output::warn(&no_bound(&model, &operating_box, narrower.as_ref(), remainder.boxes));
-        }
-        model.set_remainder(remainder);
-    }
     if let Some(path) = &args.out {
         write::atomically(path, |out| out.write_all(model.to_json().as_bytes()))?;
         output::wrote(path);
@@ -114,7 +89,6 @@ fn json_summary(model: &PolynomialModel, seconds: f64) -> serde_json::Value {
         "variables": model.variable_names(),
         "degree": model.degree(),
         "terms": terms,
-        "remainder": model.remainder(),
         "seconds": seconds,
     })
 }
@@ -141,53 +115,8 @@ fn summary(model: &PolynomialModel, seconds: f64) -> String {
         duration(seconds)
     );
     let rows: Vec<_> = (0..model.joints()).map(|joint| joint_row(model, joint)).collect();
-    match model.remainder() {
-        Some(remainder) => {
-            let error = match error_unit(model).shared() {
-                Some(unit) => format!("model error [{unit}], proved"),
-                None => "model error, proved".into(),
-            };
-            text.push_str(&table(&["joint", "terms", &error, "largest found"], &rows));
-            let _ = writeln!(
-                text,
-                "\nmodel error: forward dynamics minus model, at every point of the box \
-                 (cut into {} {})\nlargest found: its largest magnitude in a search of the box",
-                remainder.boxes,
-                plural(remainder.boxes, "part")
-            );
-        }
-        None => text.push_str(&table(&["joint", "terms"], &rows)),
-    }
+    text.push_str(&table(&["joint", "terms"], &rows));
     text
-}
-
-/// Returns the warning that no bound was found, with the joints whose radii have to be smaller.
-fn no_bound(
-    model: &PolynomialModel,
-    operating_box: &OperatingBox,
-    narrower: Option<&OperatingBox>,
-    parts: usize,
-) -> String {
-    let text = format!(
-        "no bound of the model error was found in {parts} parts of the box, because the mass \
-         matrix changes too much over the positions"
-    );
-    let Some(narrower) = narrower else {
-        return text + "; choose smaller radii of the positions in --box";
-    };
-    let radius = |[low, high]: [f64; 2]| 0.5 * (high - low);
-    let change = |(i, (whole, part)): (usize, (&[f64; 2], &[f64; 2]))| {
-        let joint = &model.robot().joints[i];
-        let [from, to] = [whole, part].map(|side| four_decimals(radius(*side)));
-        let (name, unit) = (&joint.name, joint.kind.position_unit());
-        (whole != part).then(|| format!("{name} from {from} to {to} {unit}"))
-    };
-    let sides = operating_box.q.iter().zip(&narrower.q).enumerate();
-    let changes: Vec<String> = sides.filter_map(change).collect();
-    match changes[..] {
-        [] => text + "; raise --most-boxes",
-        _ => format!("{text}; in --box, reduce the radius of {}", changes.join(", ")),
-    }
 }
 
 fn coordinates(name: &str, values: &[f64]) -> String {
@@ -197,23 +126,11 @@ fn coordinates(name: &str, values: &[f64]) -> String {
     }
 }
 
-/// Returns the unit of the model error.
-fn error_unit(model: &PolynomialModel) -> ColumnUnit {
-    ColumnUnit::new(model.joint_kinds(), JointKind::acceleration_unit)
-}
-
 fn joint_row(model: &PolynomialModel, joint: usize) -> Vec<String> {
-    let mut row = vec![
+    vec![
         model.robot().joints[joint].name.clone(),
         model.acceleration()[joint].term_count().to_string(),
-    ];
-    if let Some(remainder) = model.remainder() {
-        let bound = remainder.bounds[joint].map(|[low, high]| interval((low, high)));
-        let unit = error_unit(model);
-        row.push(bound.map_or("no bound found".into(), |bound| unit.cell(joint, bound)));
-        row.push(unit.cell(joint, four_decimals(remainder.sampled_error[joint])));
-    }
-    row
+    ]
 }
 
 fn duration(seconds: f64) -> String {

@@ -139,7 +139,6 @@ fn options_without_an_effect_are_refused() {
         ("--robot arm.toml --to urdf --input range", "--input", "URDF"),
         ("--robot arm.toml --to urdf --capsules arm.toml", "--capsules", "URDF"),
         (&format!("{model} --uncertainty 0.1"), "--uncertainty", "CORA"),
-        (&format!("{model} --torque-limits 9,9"), "--torque-limits", "CORA"),
         (&format!("{model} --capsules arm.toml"), "--capsules", "CORA"),
         (&format!("{model} --lock axis1=0"), "--lock", "CORA"),
     ] {
@@ -147,7 +146,7 @@ fn options_without_an_effect_are_refused() {
         lab.run(&format!("export {options} --out out")).fails_with(&[&refused]);
     }
     lab.run("export --robot arm.toml --to cora --data data --out out")
-        .fails_with(&["only mjcf, urdf and armour take --robot"]);
+        .fails_with(&["only mjcf and urdf take --robot"]);
     assert!(!lab.path("out").exists());
 }
 
@@ -186,29 +185,6 @@ fn the_shield_gets_a_proved_radius_and_its_own_file_is_changed_in_place() {
     lab.run(&still).fails_with_last(&["has a single sample", "two or more"]);
     lab.run(&format!("{shield} --update none.yaml --out other")).fails_with(&["none.yaml"]);
     lab.run("export --model model.json --to sara-shield --out other").fails_with(&["--data"]);
-}
-
-#[test]
-fn armour_gets_a_header_with_proved_bounds() {
-    let lab = lab("");
-    let capsule = |link: usize| {
-        format!("[[capsule]]\nlink = {link}\nfrom = [0, 0, 0]\nto = [0.4, 0, 0]\nradius = 0.05\n")
-    };
-    lab.write("capsules.toml", capsule(1) + &capsule(2));
-    let armour = "export --robot arm.toml --to armour --capsules capsules.toml --out armour";
-    let whole = format!("{armour} --uncertainty 0.03 --torque-limits 50,20");
-    let text = lab.run(&whole).exits(0).stdout;
-    assert!(text.contains("proved") && text.contains("RobotInfo.h"), "{text}");
-    assert!(lab.read("armour/RobotInfo.h").starts_with("// Written by reachtube"));
-    let result = lab.run(&format!("{whole} --json")).exits(0).json();
-    let bounds = result["mass_matrix"].as_array().unwrap();
-    assert!(bounds[0].as_f64().unwrap() > 0.0 && bounds[1].as_f64() > bounds[0].as_f64());
-    lab.run(armour).exits(2);
-    lab.run(&format!("{armour} --uncertainty 0.03 --torque-limits 50"))
-        .fails_with_last(&["1 torque limits", "2 positive"]);
-    lab.write("still.toml", lab.read("arm.toml").replace("velocity_limit = 3.0\n", ""));
-    lab.run(&whole.replace("arm.toml", "still.toml")).fails_with_last(&["velocity limit"]);
-    lab.run(&format!("{whole} --update x.h")).fails_with(&["--update"]);
 }
 
 #[test]

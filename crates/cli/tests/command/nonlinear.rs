@@ -122,28 +122,6 @@ fn progress_of_another_job_is_refused_and_a_finished_one_leaves_none() {
 }
 
 #[test]
-fn what_does_not_fit_is_refused() {
-    let lab = bent();
-    lab.run("abstract --robot bent.toml --order 3 --box 0.05,0.5,1 --out small.json").exits(0);
-    lab.run("conform --abstraction small.json --data data --torque compensated").fails_with(&[
-        "A_1.csv: q1 starts at 0.098",
-        "outside the box [-0.05, 0.05]",
-        "larger box, or expand the model elsewhere (--box)",
-    ]);
-    lab.run("abstract --robot bent.toml --order 3 --box 0.3,0.1,1 --out slow.json").exits(0);
-    lab.run("conform --abstraction slow.json --data data --torque compensated")
-        .exits(0)
-        .notes("suite A: qd2 leaves the operating box at sample 3.");
-    let mut unbounded: Value = serde_json::from_str(&lab.read("slow.json")).unwrap();
-    unbounded["remainder"]["bounds"][1] = Value::Null;
-    lab.write("unbounded.json", unbounded.to_string());
-    lab.run("conform --abstraction unbounded.json --data data --torque compensated").fails_with(&[
-        "acceleration of joint 2 has no bound over its box",
-        "(--box, --most-boxes)",
-    ]);
-}
-
-#[test]
 fn a_changed_model_is_refused() {
     let lab = bent();
     let model = conform(&lab, "--json").exits(0).json();

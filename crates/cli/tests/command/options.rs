@@ -113,7 +113,6 @@ fn options_that_need_another_are_refused_without_it() {
     for (arguments, needed) in [
         ("inspect --data data --lock axis1=0", "--robot"),
         ("prepare --robot arm.toml --data data --torque link --out windows", "--compensate"),
-        ("abstract --robot arm.toml --most-boxes 9", "--box"),
     ] {
         let run = lab.run(arguments).exits(2);
         assert!(run.stderr.contains("required") && run.stderr.contains(needed), "{run:#?}");

@@ -80,13 +80,10 @@ fn results_fit_the_schema() {
     );
     let shield = "export --model model.json --data data --to sara-shield --out shield";
     run("export_shield", &format!("{shield} --capsules capsules.toml"));
-    let armour = "export --robot arm.toml --to armour --capsules capsules.toml --out armour";
-    run("export_armour", &format!("{armour} --uncertainty 0.03 --torque-limits 50,20"));
     run("report", &format!("report {with} --out page"));
     run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");
     run("robot_show", "robot show arm.toml");
     run("abstract", "abstract --robot arm.toml");
-    run("abstract", "abstract --robot arm.toml --box 0.1,0.1,1");
     run("reproduce_coverage", "reproduce coverage --campaigns 1 --next 20");
     run("reproduce_table1", "reproduce table1 --robot arm.toml --motions 1 --orders 1");
 }

@@ -222,17 +222,13 @@ fn a_nonlinear_model_of_a_scara_conforms() {
     let made = lab
         .run(
             "abstract --robot scara.toml --paper-model 2 --order 4 --expansion 0.1,-0.2,0.1 \
-             --box 0.02,0.1,2 --out two.json",
+             --out two.json",
         )
         .exits(0);
     contains(
         &made.stdout,
-        &[
-            "expanded about q = [0.1, -0.2, 0.1] (rad, rad, m), qd = 0 (rad/s, rad/s, m/s), \
-             u = 0 (N m, N m, N)",
-            "rad/s^2",
-            " m/s^2",
-        ],
+        &["expanded about q = [0.1, -0.2, 0.1] (rad, rad, m), qd = 0 (rad/s, rad/s, m/s), \
+             u = 0 (N m, N m, N)"],
     );
     fits_the_schema(&lab.read("two.json"), "abstraction.schema.json");
     let run = lab

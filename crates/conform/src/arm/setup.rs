@@ -24,15 +24,13 @@ impl Setup {
         Self::of(robot, dynamics, settings)
     }
 
-    /// Takes a model as [`PolynomialModel::load`] reads it, with its robot, expansion point and
-    /// operating box.
+    /// Takes a model as [`PolynomialModel::load`] reads it, with its robot and expansion point.
     ///
     /// # Errors
     ///
-    /// [`Error::Unbounded`] when the model's error was found to have no bound over its box, and
-    /// settings that do not fit.
+    /// Settings that do not fit.
     pub(crate) fn with_abstraction(model: PolynomialModel, settings: Settings) -> Result<Self> {
-        let settings = settings.with_abstraction(&model)?;
+        let settings = settings.with_abstraction(&model);
         settings.validate(model.joints())?;
         let robot = Robot::from_description(model.robot())?;
         let dynamics = system_of(model, settings.method);

@@ -1,11 +1,11 @@
 //! What a user should know about recordings, in words.
 
-use reachtube_recordings::{State, copies_note};
+use reachtube_recordings::copies_note;
 
 use crate::data::origin::Origin;
 use crate::data::recordings::Recordings;
 use crate::data::settings::NominalStart;
-use crate::data::setup::{Setup, side};
+use crate::data::setup::Setup;
 use crate::data::suite::Suite;
 
 /// Returns what a user should know about the recordings that were read.
@@ -15,7 +15,6 @@ pub(super) fn recording_notes(
     recordings: &Recordings,
 ) -> Vec<String> {
     let mut notes = data_notes(setup, origin, recordings);
-    notes.extend(leaving_notes(setup, recordings));
     notes.extend(unknown_temperature(setup, recordings));
     notes
 }
@@ -54,28 +53,6 @@ fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
         ));
     }
     notes
-}
-
-/// Names, for each suite that leaves the box, where it does so first.
-fn leaving_notes(setup: &Setup, recordings: &Recordings) -> Vec<String> {
-    let Some(operating_box) = &setup.settings.operating_box else { return Vec::new() };
-    let leaves = |suite: &Suite| {
-        let envelope = &suite.envelope;
-        let outside = |k: usize, i: usize| {
-            let [low, high] = side(operating_box, i);
-            envelope.upper(k, i) > high || envelope.lower(k, i) < low
-        };
-        let states = envelope.dimension();
-        let mut places = (0..envelope.len()).flat_map(|k| (0..states).map(move |i| (k, i)));
-        let (k, i) = places.find(|&(k, i)| outside(k, i))?;
-        Some(format!(
-            "suite {}: {} leaves the operating box at sample {k}. The model error has no proved \
-             bound outside the box; there it is covered only by these recordings",
-            suite.entry.name,
-            State::from_index(i, setup.dynamics.inputs())
-        ))
-    };
-    recordings.suites.iter().filter_map(leaves).collect()
 }
 
 /// Says where friction depends on a temperature that a recording does not have.

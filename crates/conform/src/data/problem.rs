@@ -3,7 +3,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
 use reachtube_reach::{Nonlinear, System};
-use reachtube_recordings::{Run, RunEntry, RunSource, State};
+use reachtube_recordings::{Run, RunEntry, RunSource};
 
 use crate::data::case::Case;
 use crate::data::kept::KeptRuns;
@@ -13,7 +13,7 @@ use crate::data::recordings::Recordings;
 use crate::data::runaway::Runaway;
 use crate::data::sensor_noise::SensorNoise;
 use crate::data::settings::Settings;
-use crate::data::setup::{Setup, read_options, side};
+use crate::data::setup::{Setup, read_options};
 use crate::data::shape::Shape;
 use crate::data::suite::SuiteReader;
 use crate::error::{Error, Result};
@@ -90,8 +90,7 @@ impl Problem {
     ///
     /// # Errors
     ///
-    /// Every defect of every run, an unknown suite, a run that starts outside the box over which
-    /// the model's error was bounded.
+    /// Every defect of every run, an unknown suite.
     pub fn read(
         setup: Setup,
         source: Box<dyn RunSource>,
@@ -113,7 +112,6 @@ impl Problem {
             keep_all: keep == Keep::All || settings.notion.asks_points(),
         };
         let recordings = Recordings::read(&reader, names, progress)?;
-        check_starts(&setup, source.as_ref(), &recordings)?;
         Ok(Self::of_recordings(setup, Origin::Source(source.into()), recordings, kept.into_runs()))
     }
 
@@ -332,21 +330,4 @@ pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNois
         Some(radius) => SensorNoise::given(radius.clone()),
         None => SensorNoise::estimate(recordings, setup.dynamics.inputs()),
     }
-}
-
-/// Refuses recordings that start outside the box over which the model's error was bounded: an
-/// initial set that holds them would leave it too.
-fn check_starts(setup: &Setup, source: &dyn RunSource, recordings: &Recordings) -> Result<()> {
-    let Some(operating_box) = &setup.settings.operating_box else { return Ok(()) };
-    for run in recordings.suites.iter().flat_map(|suite| &suite.runs) {
-        for (i, &value) in run.start.iter().enumerate() {
-            let [low, high] = side(operating_box, i);
-            if !(low..=high).contains(&value) {
-                let file = source.runs()[run.index].file.clone();
-                let state = State::from_index(i, setup.dynamics.inputs());
-                return Err(Error::StartsOutsideBox { file, state, value, low, high });
-            }
-        }
-    }
-    Ok(())
 }

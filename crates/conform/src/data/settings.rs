@@ -2,9 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use reachtube_abstraction::{
-    Abstraction, ExpansionPoint, OperatingBox, PolynomialModel, Remainder,
-};
+use reachtube_abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{GapLimit, Torque};
 use serde::{Deserialize, Serialize};
@@ -158,10 +156,6 @@ pub struct Settings {
     pub abstraction: Abstraction,
     /// Where the model is expanded.
     pub expansion_point: ExpansionPoint,
-    /// The box over which the model's error was bounded, where that was done; recordings must start
-    /// in it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub operating_box: Option<OperatingBox>,
     /// How the sets are found.
     #[serde(default)]
     pub method: Method,
@@ -214,7 +208,6 @@ impl Settings {
             torque,
             abstraction: Abstraction::default(),
             expansion_point: ExpansionPoint::zero(joints),
-            operating_box: None,
             method: Method::default(),
             disturbance: Disturbance::default(),
             centre: Centre::default(),
@@ -254,22 +247,13 @@ impl Settings {
         }
     }
 
-    /// Takes model, expansion point and operating box from an abstraction.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Unbounded`] when the model's error was found to have no bound over its box.
-    pub(crate) fn with_abstraction(self, model: &PolynomialModel) -> Result<Self> {
-        let unbounded = |remainder: &Remainder| remainder.bounds.iter().position(Option::is_none);
-        if let Some(joint) = model.remainder().and_then(unbounded) {
-            return Err(Error::Unbounded { joint: joint + 1 });
-        }
-        Ok(Self {
+    /// Takes model and expansion point from an abstraction.
+    pub(crate) fn with_abstraction(self, model: &PolynomialModel) -> Self {
+        Self {
             abstraction: Abstraction { model: model.kind(), order: model.order() },
             expansion_point: model.expansion_point().clone(),
-            operating_box: model.remainder().map(|remainder| remainder.operating_box.clone()),
             ..self
-        })
+        }
     }
 
     /// Checks sizes and signs for a robot of `joints` joints.

@@ -4,7 +4,6 @@ use std::fmt::Debug;
 use std::path::Path;
 use std::sync::Arc;
 
-use reachtube_abstraction::OperatingBox;
 use reachtube_reach::System;
 use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run};
 
@@ -254,10 +253,4 @@ impl Setup {
 pub(crate) fn read_options(setup: &Setup) -> ReadOptions {
     let Settings { gap_limit, until, .. } = setup.settings;
     ReadOptions { joints: Some(setup.dynamics.inputs()), gap_limit, until }
-}
-
-/// The side of the box for state `i`, q then q̇.
-pub(crate) fn side(operating_box: &OperatingBox, i: usize) -> [f64; 2] {
-    let n = operating_box.q.len();
-    if i < n { operating_box.q[i] } else { operating_box.qd[i - n] }
 }

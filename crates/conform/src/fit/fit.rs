@@ -349,18 +349,12 @@ impl FitSettings {
     ///
     /// # Errors
     ///
-    /// [`Error::Fit`] for a weight of the pull that is no part, for a model whose error was
-    /// bounded, and for groups of parameters that the setup cannot fit.
+    /// [`Error::Fit`] for a weight of the pull that is no part, and for groups of parameters that
+    /// the setup cannot fit.
     pub fn check(&self, setup: &Setup) -> Result<()> {
         if let Some(pull) = self.pull.filter(|pull| !(0.0..=1.0).contains(pull)) {
             let why = format!("the weight of the pull is {pull}; give a number from 0 to 1");
             return Err(Error::Fit(why));
-        }
-        // The fit replaces the robot.
-        if setup.settings.operating_box.is_some() {
-            let why = "the error of the model was bounded for the identified robot, and does not \
-                       hold for another one; fit without the file of the abstraction";
-            return Err(Error::Fit(why.into()));
         }
         setup.drive.check_fit(&self.groups)
     }

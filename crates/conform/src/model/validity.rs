@@ -36,8 +36,6 @@ impl Model {
             && set(&self.input_set, n)
             && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
         let point = &self.settings.expansion_point;
-        let fits_box =
-            self.settings.operating_box.as_ref().is_none_or(|sides| sides.is_valid_for(n));
         let problem = if is_linear && costs.contains(&None) {
             "it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model \
              does"
@@ -62,8 +60,6 @@ impl Model {
             format!("its stiction names a joint that is not one of {n}")
         } else if self.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
             format!("its correction is not one of {n} joints")
-        } else if !fits_box {
-            format!("its operating box is not one of {n} joints")
         } else {
             return self.settings.validate(n).map_err(|error| error.to_string());
         };

@@ -2,7 +2,7 @@
 
 use crate::common::{Random, conform_all, fold_of, grid, step, two_joints};
 use nalgebra::DVector;
-use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, OperatingBox, linear_model};
+use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, linear_model};
 use reachtube_conform::fit::{FitRecord, Fitted};
 use reachtube_conform::fleet::OnDefect;
 use reachtube_conform::plausibility::WarningKind;
@@ -238,13 +238,6 @@ fn a_right_model_is_left_alone_and_bad_settings_are_refused() {
     assert!(refused(&right, &[Group::Viscous], Some(2.0)).contains("from 0 to 1"));
     let link = problem(PLAIN, 2, |settings| settings.torque = Torque::Link);
     assert!(refused(&link, &[Group::Inertia, Group::WarmUp], None).contains("no friction"));
-    // An error that was bounded for one robot does not hold for another.
-    let bounded = problem(PLAIN, 2, |settings| {
-        let sides = |radius: f64| vec![[-radius, radius]; 2];
-        let operating_box = OperatingBox { q: sides(3.0), qd: sides(9.0), u: sides(9.0) };
-        settings.operating_box = Some(operating_box);
-    });
-    assert!(refused(&bounded, &[Group::Viscous], None).contains("does not hold for another"));
 }
 
 #[test]

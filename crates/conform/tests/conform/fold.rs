@@ -3,7 +3,7 @@
 
 use crate::common::{Disturbed, Random, fold_of, grid, two_joints};
 use proptest::prelude::*;
-use reachtube_abstraction::{Abstraction, ModelKind, OperatingBox};
+use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::fleet::{Fold, OnDefect};
 use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::NominalStart;
@@ -166,23 +166,6 @@ fn robots_that_warm_up_give_the_same_files_and_need_every_run() {
         };
         assert!(why.problem.contains("friction depends on it"), "{why}");
     }
-}
-
-/// The first of the runs that start outside is named, as by reading.
-#[test]
-fn a_run_that_starts_outside_the_operating_box_is_refused_as_by_reading() {
-    let robot = two_joints();
-    let runs = campaign(&robot, &SUITES);
-    let setup = setup(&robot, |settings| {
-        let [q, qd, u] = [0.008, 1.0, 5.0].map(|radius| vec![[-radius, radius]; 2]);
-        settings.operating_box = Some(OperatingBox { q, qd, u });
-    });
-    let once = Problem::read(setup.clone(), Box::new(runs.clone()), &[], Keep::Needed, &Silent);
-    let parts: Vec<usize> = (0..24).map(|index| index % 3).collect();
-    let fold = grouped(&setup, &runs, &(0..24).rev().collect::<Vec<_>>(), &parts, &[1, 0]);
-    let by_fold = Problem::of_fold(setup, fold, OnDefect::Refuse);
-    let words = [once.unwrap_err().to_string(), by_fold.unwrap_err().to_string()];
-    assert!(words[0].contains("outside the box") && words[0] == words[1], "{words:?}");
 }
 
 /// Everything that is drawn from large suites is drawn alike, and only the list of the recordings

@@ -1,8 +1,6 @@
 use crate::friction::falling::{FallingFriction, nearest, rising};
 use crate::friction::form::CoulombForm;
-use crate::friction::model::FrictionModel;
 use crate::friction::sample::{FrictionSample, quadrant_counts};
-use crate::friction::stribeck::{StribeckTrial, try_stribeck};
 use crate::regression::residuals::{
     HUBER_DEVIATIONS, autocorrelation_time, huber_row_factor, robust_standard_deviation,
     root_mean_square,
@@ -24,7 +22,7 @@ const MIN_SAMPLES: usize = 50;
 pub struct JointFriction {
     /// Name of the joint.
     pub joint: String,
-    /// Coefficients a1 to a8 and v1 to v3, and the Stribeck effect if it was accepted.
+    /// Coefficients a1 to a8 and v1 to v3.
     pub coefficients: FrictionDescription,
     /// Standard errors of the coefficients, 0 for coefficients that are fixed by the form.
     pub standard_errors: FrictionDescription,
@@ -44,9 +42,6 @@ pub struct JointFriction {
     pub inertia: f64,
     /// Number of samples, and the number of independent ones among them.
     pub samples: (usize, f64),
-    /// The trial of the Stribeck effect, if it was asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stribeck: Option<StribeckTrial>,
     /// Viscous friction of least squares, if it falls with speed and was not used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub falling: Option<FallingFriction>,
@@ -90,70 +85,35 @@ pub(crate) fn fit(name: &str, samples: &[FrictionSample], limit: f64) -> Option<
     if samples.len() < MIN_SAMPLES {
         return None;
     }
-    let model = FrictionModel { form: CoulombForm::determined_by(samples), stribeck: None };
-    Some(fit_model(name, samples, model, limit))
+    Some(fit_form(name, samples, CoulombForm::determined_by(samples), limit))
 }
 
-/// Fits friction as [`fit`] does, and tries the Stribeck effect.
-///
-/// The effect becomes part of the friction if it predicts held-out slow motions better.
-#[must_use]
-pub(crate) fn fit_with_stribeck(
-    name: &str,
-    samples: &[FrictionSample],
-    limit: f64,
-) -> Option<FrictionFit> {
-    let mut found = fit(name, samples, limit)?;
-    let form = found.joint.form;
-    let (_, weights) = robust_solution(FrictionModel { form, stribeck: None }, samples);
-    let (trial, stribeck) = try_stribeck(form, samples, &weights);
-    if stribeck.is_some() {
-        found = fit_model(name, samples, FrictionModel { form, stribeck }, limit);
-    }
-    // Other weights of outliers may turn the rise into a fall.
-    let falls = found.joint.coefficients.stribeck.is_some_and(|law| law.excess <= 0.0);
-    if falls {
-        found = fit(name, samples, limit)?;
-    }
-    let reason = falls.then(|| "friction does not rise toward standstill".into());
-    let (accepted, reason) = (trial.accepted && !falls, trial.reason.or(reason));
-    found.joint.stribeck = Some(StribeckTrial { accepted, reason, ..trial });
-    Some(found)
-}
-
-/// Fits the coefficients of a model.
-fn fit_model(
-    name: &str,
-    samples: &[FrictionSample],
-    model: FrictionModel,
-    limit: f64,
-) -> FrictionFit {
-    let (mut solution, weights) = robust_solution(model, samples);
-    let falling = rise(name, (model, samples, &weights), limit, &mut solution.x);
-    let residuals = residuals(model, samples, &solution.x);
+/// Fits the coefficients of a form.
+fn fit_form(name: &str, samples: &[FrictionSample], form: CoulombForm, limit: f64) -> FrictionFit {
+    let (mut solution, weights) = robust_solution(form, samples);
+    let falling = rise(name, (form, samples, &weights), limit, &mut solution.x);
+    let residuals = residuals(form, samples, &solution.x);
     // Standard errors that count independent samples only.
     let time = autocorrelation_time(&[&residuals]);
     let scale = robust_standard_deviation(&residuals)
         .max(root_mean_square(residuals.iter().zip(&weights).map(|(r, w)| r * w)))
         * time.sqrt();
-    let errors = standard_errors(model, samples, &weights, &solution);
-    let errors: Vec<f64> = errors.iter().map(|e| e * scale).collect();
+    let errors: Vec<f64> = solution.standard_errors().iter().map(|e| e * scale).collect();
     // Explained variance.
     let unexplained = variation(residuals.clone());
     let joint = JointFriction {
         joint: name.into(),
-        coefficients: model.description(solution.x.as_slice()),
-        standard_errors: model.errors(&errors),
-        form: model.form,
+        coefficients: form.description(solution.x.as_slice()),
+        standard_errors: form.errors(&errors),
+        form,
         quadrants: quadrant_counts(samples),
         r2: 1.0 - unexplained / variation(samples.iter().map(|s| s.torque + s.load).collect()),
         r2_without_gravity: 1.0
             - unexplained / variation(samples.iter().map(|s| s.torque).collect()),
         residual: root_mean_square(residuals.iter().copied()),
         condition: solution.condition,
-        inertia: solution.x[model.inertia()],
+        inertia: solution.x[form.inertia()],
         samples: (samples.len(), samples.len() as f64 / time),
-        stribeck: None,
         falling,
     };
     FrictionFit { joint, samples: samples.to_vec(), residuals }
@@ -163,71 +123,49 @@ fn fit_model(
 /// nearest whose friction rises. Returns the friction that was replaced.
 fn rise(
     name: &str,
-    (model, samples, weights): (FrictionModel, &[FrictionSample], &[f64]),
+    (form, samples, weights): (CoulombForm, &[FrictionSample], &[f64]),
     limit: f64,
     x: &mut DVector<f64>,
 ) -> Option<FallingFriction> {
-    let viscous = model.description(x.as_slice()).viscous;
+    let viscous = form.description(x.as_slice()).viscous;
     let falls_beyond = FallingFriction::speed(viscous, limit)?;
-    let size = |x: &DVector<f64>| root_mean_square(residuals(model, samples, x).into_iter());
+    let size = |x: &DVector<f64>| root_mean_square(residuals(form, samples, x).into_iter());
     let plain = size(x);
-    let factor = weighted_factor(model, samples, weights);
-    let condition = rising(model.viscous().map(Some), [0.0; 3], viscous, limit, &factor);
+    let factor = weighted_factor(form, samples, weights);
+    let condition = rising(form.viscous().map(Some), [0.0; 3], viscous, limit, &factor);
     *x = nearest(&factor, plain.max(f64::MIN_POSITIVE), &[condition]);
     let residuals = [plain, size(x)];
     Some(FallingFriction { joint: name.into(), viscous, falls_beyond, limit, residuals })
 }
 
-/// Returns the standard errors of the coefficients, and of the Stribeck speed as the last of them,
-/// for rows with errors of variance 1.
-fn standard_errors(
-    model: FrictionModel,
-    samples: &[FrictionSample],
-    weights: &[f64],
-    solution: &Solution,
-) -> Vec<f64> {
-    if model.stribeck.is_none() {
-        return solution.standard_errors();
-    }
-    // The speed was fitted too, so its column takes part.
-    let columns = model.columns() + 1;
-    let all: Vec<usize> = (0..samples.len()).collect();
-    let factor = TriangularFactor::from_written_rows(&all, columns, |k, out| {
-        let mut row = model.row(&samples[k]);
-        row.push(model.speed_derivative(&samples[k], solution.x.as_slice()));
-        out.iter_mut().zip(&row).for_each(|(o, v)| *o = weights[k] * v);
-    });
-    factor.solve().standard_errors()
-}
-
 /// Returns the solution by iteratively reweighted least squares, and the factors of the rows.
-fn robust_solution(model: FrictionModel, samples: &[FrictionSample]) -> (Solution, Vec<f64>) {
+fn robust_solution(form: CoulombForm, samples: &[FrictionSample]) -> (Solution, Vec<f64>) {
     let mut weights = vec![1.0; samples.len()];
     for _ in 0..ROUNDS {
-        let left = residuals(model, samples, &weighted_factor(model, samples, &weights).solve().x);
+        let left = residuals(form, samples, &weighted_factor(form, samples, &weights).solve().x);
         let limit = HUBER_DEVIATIONS * robust_standard_deviation(&left);
         weights = left.iter().map(|r| huber_row_factor(*r, limit)).collect();
     }
-    (weighted_factor(model, samples, &weights).solve(), weights)
+    (weighted_factor(form, samples, &weights).solve(), weights)
 }
 
 fn weighted_factor(
-    model: FrictionModel,
+    form: CoulombForm,
     samples: &[FrictionSample],
     weights: &[f64],
 ) -> TriangularFactor {
-    let columns = model.columns();
+    let columns = form.columns();
     let all: Vec<usize> = (0..samples.len()).collect();
     TriangularFactor::from_written_rows(&all, columns, |k, out| {
-        let (row, w) = (model.row(&samples[k]), weights[k]);
+        let (row, w) = (form.row(&samples[k]), weights[k]);
         out[..columns].iter_mut().zip(&row).for_each(|(o, v)| *o = w * v);
         out[columns] = w * samples[k].torque;
     })
 }
 
-fn residuals(model: FrictionModel, samples: &[FrictionSample], x: &DVector<f64>) -> Vec<f64> {
+fn residuals(form: CoulombForm, samples: &[FrictionSample], x: &DVector<f64>) -> Vec<f64> {
     let residual = |s: &FrictionSample| {
-        s.torque - model.row(s).iter().zip(x.iter()).map(|(a, x)| a * x).sum::<f64>()
+        s.torque - form.row(s).iter().zip(x.iter()).map(|(a, x)| a * x).sum::<f64>()
     };
     samples.iter().map(residual).collect()
 }
@@ -262,7 +200,7 @@ mod tests {
                 + viscous.torque(&qd)
                 + 1.7 * qdd
                 + noise * random() * 12f64.sqrt();
-            FrictionSample { qd, qdd, load, torque, factors: [1.0; 2] }
+            FrictionSample { qd, qdd, load, torque }
         };
         (1..12_000).map(sample).filter(|s| s.qd.abs() > 0.02).collect()
     }

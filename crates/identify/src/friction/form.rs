@@ -68,6 +68,16 @@ impl CoulombForm {
         self.coulomb_columns() + OTHER_COLUMNS
     }
 
+    /// Returns the indices of v1, v2 and v3.
+    pub(super) fn viscous(self) -> [usize; 3] {
+        [4, 3, 2].map(|before| self.columns() - before)
+    }
+
+    /// Returns the index of the joint's inertia.
+    pub(super) fn inertia(self) -> usize {
+        self.columns() - 1
+    }
+
     /// Returns the row of the regression: Coulomb columns, q̇, q̇², q̇³, q̈.
     pub(super) fn row(self, s: &FrictionSample) -> Vec<f64> {
         let mut row = vec![0.0; self.coulomb_columns()];
@@ -77,10 +87,7 @@ impl CoulombForm {
             Self::Symmetric => row.copy_from_slice(&[sign, sign * s.load.abs(), 1.0]),
             Self::Constant => row[usize::from(sign < 0.0)] = 1.0,
         }
-        let [coulomb, viscous] = s.factors;
-        row.iter_mut().for_each(|value| *value *= coulomb);
-        row.extend([s.qd, s.qd.powi(2), s.qd.powi(3)].map(|value| viscous * value));
-        row.push(s.qdd);
+        row.extend([s.qd, s.qd.powi(2), s.qd.powi(3), s.qdd]);
         row
     }
 

@@ -1,5 +1,5 @@
 use crate::fit::CONDITION_LIMIT;
-use crate::friction::fit::{FrictionFit, fit, fit_with_stribeck};
+use crate::friction::fit::{FrictionFit, fit};
 use crate::friction::sample::{FrictionSample, isolated_samples};
 use crate::prepare::log::PreparedLog;
 use crate::samples::Sampling;
@@ -13,7 +13,6 @@ pub(crate) fn fit_joints(
     robot: &Robot,
     slow: &[PreparedLog],
     sampling: &Sampling,
-    stribeck: bool,
 ) -> (Vec<FrictionFit>, Vec<String>) {
     let (mut fits, mut warnings) = (Vec::new(), Vec::new());
     if slow.is_empty() {
@@ -23,7 +22,6 @@ pub(crate) fn fit_joints(
         let name = &description.name;
         let samples: Vec<FrictionSample> =
             slow.iter().flat_map(|log| isolated_samples(robot, log, joint, sampling)).collect();
-        let fit = if stribeck { fit_with_stribeck } else { fit };
         match fit(name, &samples, sampling.velocity_limit(robot, joint)) {
             Some(fit) => {
                 warnings.extend(ill_conditioned(name, fit.joint.condition));

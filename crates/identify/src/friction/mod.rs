@@ -8,6 +8,4 @@ pub(crate) mod falling;
 pub(crate) mod fit;
 pub(crate) mod form;
 pub(crate) mod joints;
-mod model;
 pub(crate) mod sample;
-pub(crate) mod stribeck;

@@ -13,8 +13,6 @@ pub struct FrictionSample {
     pub load: f64,
     /// Recorded torque minus the gravity torque \[N m\].
     pub torque: f64,
-    /// Factors of Coulomb and viscous friction by the joint's warmth; 1 without a law.
-    pub factors: [f64; 2],
 }
 
 impl FrictionSample {
@@ -58,7 +56,6 @@ pub(super) fn isolated_samples(
             qdd: log.qdd(k)[joint],
             load,
             torque: log.tau(k)[joint] - load,
-            factors: sampling.factors(log, k).get(joint).copied().unwrap_or([1.0; 2]),
         }
     };
     (0..log.len()).step_by(stride).filter(isolated).map(sample).collect()

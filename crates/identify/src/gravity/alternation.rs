@@ -45,8 +45,7 @@ pub(crate) fn fit_gravity_and_friction(
             .as_ref()
             .map(|gravity| KnownFriction { robot: &latest, deviations: &gravity.rest_deviations });
         let gravity = fit_gravity(robot, rests, slow, sampling, model, known)?;
-        (found.friction, found.warnings) =
-            fit_joints(&gravity.robot, slow, sampling, model.stribeck);
+        (found.friction, found.warnings) = fit_joints(&gravity.robot, slow, sampling);
         // This gravity is the load of the friction that is known in the next round.
         latest = with_friction(&gravity.robot, &coefficients(&found.friction, robot))?;
         found.gravity = Some(gravity);

@@ -2,5 +2,3 @@
 
 pub(crate) mod alternation;
 pub(crate) mod fit;
-
-pub use fit::GravityFit;

@@ -3,7 +3,7 @@
 pub(crate) mod base;
 pub(crate) mod columns;
 pub(crate) mod description;
-mod diagonal;
+pub(crate) mod diagonal;
 mod falling;
 pub(crate) mod fit;
 pub(crate) mod physical;
@@ -12,7 +12,6 @@ mod reference;
 pub(crate) mod saturation;
 
 pub use base::BaseParameter;
-pub use diagonal::JointInertia;
 pub use fit::InertiaFit;
 pub use physical::PhysicalFit;
 pub use saturation::SaturatingFriction;

@@ -3,7 +3,6 @@
 //! Friction of strain-wave gears often rises steeply at low speeds and levels off. A cubic that
 //! bends so falls at higher speeds, and the nearest cubic that rises is nearly a line.
 
-use crate::friction::stribeck::{geometric, solve, squares};
 use crate::held_out::gains;
 use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
@@ -187,4 +186,33 @@ fn best(grams: &[DMatrix<f64>]) -> Option<(usize, DVector<f64>)> {
         Some((squares(gram, &x), at, x))
     });
     fits.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at, x)| (at, x))
+}
+
+/// Returns `count` numbers from the first to the second, each the same factor above the one before.
+fn geometric([low, high]: [f64; 2], count: usize) -> Vec<f64> {
+    let ratio = (high / low).powf(1.0 / (count - 1) as f64);
+    (0..count).map(|k| low * ratio.powi(k as i32)).collect()
+}
+
+/// Solves the normal equations in some columns; the other entries of the result are 0. The result
+/// is `None` where they do not determine it.
+fn solve(gram: &DMatrix<f64>, columns: &[usize]) -> Option<DVector<f64>> {
+    let last = gram.ncols() - 1;
+    let scale: Vec<f64> = columns.iter().map(|c| gram[(*c, *c)].sqrt()).collect();
+    if scale.iter().any(|scale| *scale <= 0.0) {
+        return None;
+    }
+    let p = columns.len();
+    let entry = |i: usize, j: usize| gram[(columns[i], columns[j])] / (scale[i] * scale[j]);
+    let right = DVector::from_fn(p, |i, _| gram[(columns[i], last)] / scale[i]);
+    let unit = DMatrix::from_fn(p, p, entry).cholesky()?.solve(&right);
+    let mut x = DVector::zeros(last);
+    (0..p).for_each(|i| x[columns[i]] = unit[i] / scale[i]);
+    Some(x)
+}
+
+/// Returns the sum of squared residuals of rows with this Gram matrix.
+fn squares(gram: &DMatrix<f64>, x: &DVector<f64>) -> f64 {
+    let z = x.clone().push(-1.0);
+    (z.transpose() * gram * &z)[(0, 0)].max(0.0)
 }

@@ -233,7 +233,7 @@ mod tests {
         let corrected = Fault::Degrees.corrected(&robot(), &log());
         assert_eq!((corrected.q(2)[1], corrected.tau(1)), (5.0 * PI / 180.0, &[200.0, 300.0][..]));
         let slow = vec![180.0; 6];
-        let sampling = Sampling { rate: 1.0, slow, margin: 0.1, laws: vec![], velocities: vec![] };
+        let sampling = Sampling { rate: 1.0, slow, margin: 0.1, velocities: vec![] };
         assert_eq!(Fault::Degrees.corrected_sampling(&robot(), &sampling).slow, [PI; 6]);
     }
 

@@ -1,5 +1,3 @@
-use reachtube_robot::friction::WarmingBy;
-
 /// A recording prepared for regression: K evenly spaced samples of n joints, filtered without
 /// phase shift.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,17 +118,6 @@ impl PreparedLog {
     #[must_use]
     pub(crate) fn time(&self, k: usize) -> f64 {
         self.start + k as f64 * self.step
-    }
-
-    /// Returns the quantity that a law of warming depends on, at sample k of a joint: its
-    /// temperature \[°C\] or the number of the recording. The result is `None` where the recording
-    /// does not know it.
-    #[must_use]
-    pub(crate) fn warmth_value(&self, by: WarmingBy, joint: usize, k: usize) -> Option<f64> {
-        match by {
-            WarmingBy::Temperature => self.temperatures.get(k * self.joints + joint).copied(),
-            WarmingBy::Runs | WarmingBy::Thermal => self.order.map(|order| order as f64),
-        }
     }
 
     /// Returns whether each joint moves at each sample, row-major K x n.

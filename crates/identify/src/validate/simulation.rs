@@ -6,7 +6,6 @@ use reachtube_ode::{Ensemble, InitialValueProblem};
 use reachtube_robot::{DrivenBy, Robot, RobotField};
 use reachtube_scalar::Lanes;
 use serde::Serialize;
-use std::borrow::Cow;
 
 /// Limit of the windows of one length in one log.
 const MAX_WINDOWS: usize = 40;
@@ -90,25 +89,6 @@ fn simulate_windows(robot: &Robot, logs: &[&PreparedLog], duration: f64) -> Wind
     }
 }
 
-/// Returns the robot as warm as in a recording, as far as the recording knows it.
-fn warmed<'a>(robot: &'a Robot, log: &PreparedLog) -> Cow<'a, Robot> {
-    if robot.warms_by().is_empty() {
-        return Cow::Borrowed(robot);
-    }
-    let mut warm = robot.clone();
-    if let Some(run) = log.order {
-        warm = warm.at_run(run as f64);
-    }
-    if !log.temperatures.is_empty() {
-        let mean = |joint: usize| {
-            let values = log.temperatures.iter().skip(joint).step_by(log.joints);
-            values.sum::<f64>() / log.len() as f64
-        };
-        warm = warm.at_temperature(&(0..log.joints).map(mean).collect::<Vec<_>>());
-    }
-    Cow::Owned(warm)
-}
-
 /// Returns the simulated minus the recorded state at the end of each of some windows of one length
 /// in one log, 2n entries.
 ///
@@ -129,8 +109,7 @@ fn window_errors(
     let runs = starts.iter().zip(&held);
     let runs: Vec<_> = runs.map(|(start, inputs)| InitialValueProblem { start, inputs }).collect();
     let mut errors = vec![None; windows.len()];
-    let robot = warmed(robot, log);
-    let mut field = RobotField::new(&robot, DrivenBy::Motor);
+    let mut field = RobotField::new(robot, DrivenBy::Motor);
     let mut ensemble = Ensemble::<Lanes<TOGETHER>>::new(2 * robot.joint_count());
     ensemble.integrate(&mut field, &times, substeps, &runs, |window, sample, x| {
         if sample == length {

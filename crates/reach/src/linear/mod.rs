@@ -18,6 +18,6 @@ pub use input_gains::Disturbance;
 pub use propagation::Propagation;
 pub use sample_generators::SampleGenerators;
 pub use solution::{Solution, Trajectory};
-pub use step::{PropagationStep, step};
+pub use step::step;
 pub use step_bounds::{StepBounds, StepRadii};
 pub use system::LinearSystem;

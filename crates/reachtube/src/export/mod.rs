@@ -3,8 +3,7 @@
 //! [`ExportCase::all`] takes a model over recorded inputs, and [`files`] writes one case for a
 //! [`Tool`]. The first lines of each file say what the tool computes from it and where this differs
 //! from the model. [`robot::mjcf`] and [`robot::urdf`] write a robot for simulators, and
-//! [`shield::Shield`] what the safety shield SaRA reads, and [`armour::Armour`] what the planner
-//! ARMOUR reads.
+//! [`shield::Shield`] what the safety shield SaRA reads.
 //! `docs/export.md` has a table of models, tools and their meaning.
 //!
 //! # Examples
@@ -32,7 +31,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod armour;
 mod case;
 mod cora;
 mod draws;

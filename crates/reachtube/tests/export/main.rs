@@ -1,7 +1,6 @@
 //! Every exported file is read back, and holds the model bit by bit.
 
 mod affine;
-mod armour;
 mod automata;
 mod cases;
 mod dynamics;

@@ -1,6 +1,6 @@
 //! Texts of the shape of real files, from which hostile ones are made.
 
-use reachtube::abstraction::{ExpansionPoint, ModelKind, OperatingBox, PolynomialModel};
+use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
 use reachtube::conform::SuiteReach;
 use reachtube::export::ExportError;
 use reachtube::export::shield::{Shield, ShieldFile};
@@ -115,10 +115,7 @@ pub(crate) fn abstractions() -> Vec<Vec<u8>> {
     let robot = Robot::from_toml(ROBOT, "arm").unwrap();
     let point = ExpansionPoint::from_values(&[], 2).unwrap();
     let make = |kind, order| PolynomialModel::new(&robot, kind, order, &point).unwrap();
-    let mut bounded = make(ModelKind::One, 2);
-    let about = OperatingBox::about(&point, &[0.1, 0.1, 1.0]).unwrap();
-    bounded.set_remainder(bounded.bound_remainder(&about, 4).unwrap());
-    [bounded, make(ModelKind::Two, 3), make(ModelKind::Three, 2)]
+    [make(ModelKind::One, 2), make(ModelKind::Two, 3), make(ModelKind::Three, 2)]
         .map(|model| model.to_json().into_bytes())
         .into()
 }

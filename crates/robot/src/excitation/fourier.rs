@@ -83,14 +83,14 @@ impl FourierTrajectory {
     }
 
     /// Returns a bound of a joint's speed at all times \[rad/s\], with the guarantee of
-    /// [`FourierTrajectory::position_range`].
+    /// `FourierTrajectory::position_range`.
     pub fn speed_bound(&self, joint: usize) -> f64 {
         let (low, high) = self.extremes(joint, 1);
         high.max(-low) * grid_excess()
     }
 
     /// Returns a bound of the magnitude of a joint's acceleration at all times \[rad/s²\], with the
-    /// guarantee of [`FourierTrajectory::position_range`].
+    /// guarantee of `FourierTrajectory::position_range`.
     pub fn acceleration_bound(&self, joint: usize) -> f64 {
         let (low, high) = self.extremes(joint, 2);
         high.max(-low) * grid_excess()

@@ -33,7 +33,7 @@ impl Robot {
     /// # Guarantee
     ///
     /// Up to rounding, positions, speeds and accelerations are within their limits at all times,
-    /// not only at samples: see [`FourierTrajectory::position_range`].
+    /// not only at samples: see `FourierTrajectory::position_range`.
     ///
     /// # Errors
     ///

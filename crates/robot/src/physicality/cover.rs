@@ -11,11 +11,11 @@ const LEAST_WIDTH: f64 = 1e-6;
 
 /// A box of positions with enclosures of their sines and cosines.
 #[derive(Clone)]
-pub(super) struct PositionBox {
+struct PositionBox {
     kinds: Vec<JointKind>,
-    pub(super) q: Vec<Interval>,
-    pub(super) sin: Vec<Interval>,
-    pub(super) cos: Vec<Interval>,
+    q: Vec<Interval>,
+    sin: Vec<Interval>,
+    cos: Vec<Interval>,
 }
 
 impl PositionBox {
@@ -27,18 +27,18 @@ impl PositionBox {
 
     /// Returns the joints that can be bisected, whose interval is wide enough. M does not depend on
     /// the first joint.
-    pub(super) fn wide_joints(&self) -> impl Iterator<Item = usize> {
+    fn wide_joints(&self) -> impl Iterator<Item = usize> {
         (1..self.q.len()).filter(|i| self.q[*i].width() > LEAST_WIDTH)
     }
 
     /// Returns the box in which one joint is fixed at its middle.
-    pub(super) fn with_middle(&self, joint: usize) -> Self {
+    fn with_middle(&self, joint: usize) -> Self {
         let middle = self.q[joint].mid();
         self.part(joint, middle, middle)
     }
 
     /// Returns the two halves along one joint.
-    pub(super) fn halves(&self, joint: usize) -> [Self; 2] {
+    fn halves(&self, joint: usize) -> [Self; 2] {
         let q = self.q[joint];
         [self.part(joint, q.lo(), q.mid()), self.part(joint, q.mid(), q.hi())]
     }
@@ -97,7 +97,7 @@ impl Robot {
     }
 
     /// Returns the box of all positions within the limits.
-    pub(super) fn position_limits_box(&self) -> PositionBox {
+    fn position_limits_box(&self) -> PositionBox {
         let limits = self.joints.iter().map(|j| j.position_limits);
         let q: Vec<_> =
             limits.map(|[low, high]| Interval::point(low).hull(Interval::point(high))).collect();

@@ -1,7 +1,6 @@
 //! Checks whether a robot's mass matrix is positive definite, as the mass matrix of bodies is.
 
 mod cover;
-mod eigenvalues;
 mod links;
 pub(crate) mod outcome;
 mod search;

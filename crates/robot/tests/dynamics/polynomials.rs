@@ -257,48 +257,6 @@ fn all_algorithms<S: Scalar>(robot: &Robot, [sin, cos, qd, last]: [&[S]; 4]) -> 
     out
 }
 
-/// Taylor models enclose the dynamics at 10,000 points and are less than a third as wide as
-/// intervals. Their remainders are a small part of their width.
-#[test]
-fn taylor_models_of_the_dynamics_enclose_it() {
-    let robot = Robot::lwa4p();
-    let n = robot.joint_count();
-    let mut runner = proptest::test_runner::TestRunner::deterministic();
-    let space = TaylorSpace::new(3 * n, 3).unwrap();
-    let middle = [
-        0.4, -0.7, 0.9, 0.2, -0.5, 0.3, 0.5, -0.4, 0.6, 0.3, -0.8, 0.2, 1.0, -2.0, 0.5, 1.5, -0.3,
-        0.7,
-    ];
-    let sides: Vec<Interval> = middle.iter().map(|m| Interval::centred(*m, 0.05)).collect();
-    let domain = TaylorBox::new(&space, &sides);
-    let z = domain.variables();
-    let (sin, cos): (Vec<_>, Vec<_>) = z[..n].iter().map(Elementary::sin_cos).unzip();
-    let models: Vec<TaylorModel> = all_algorithms(&robot, [&sin, &cos, &z[n..2 * n], &z[2 * n..]]);
-    let (sin, cos): (Vec<_>, Vec<_>) = sides[..n].iter().map(|q| q.sin_cos()).unzip();
-    let boxes = all_algorithms(&robot, [&sin, &cos, &sides[n..2 * n], &sides[2 * n..]]);
-    let width = |of: &dyn Fn(usize) -> f64| (0..2 * n).map(of).sum::<f64>();
-    let (tight, wide) = (width(&|i| models[i].range().width()), width(&|i| boxes[i].width()));
-    assert!(tight < wide / 3.0, "{tight} {wide}");
-    let point = proptest::collection::vec(-1.0..=1.0f64, 3 * n);
-    for _ in 0..10_000 {
-        let t = point.new_tree(&mut runner).unwrap().current();
-        let at: Vec<f64> = t.iter().zip(&middle).map(|(t, m)| m + 0.05 * t).collect();
-        let (sin, cos): (Vec<_>, Vec<_>) = at[..n].iter().map(|q| q.sin_cos()).unzip();
-        let exact = all_algorithms(&robot, [&sin, &cos, &at[n..2 * n], &at[2 * n..]]);
-        let place: Vec<Interval> = at.iter().map(|x| Interval::point(*x)).collect();
-        for (model, exact) in models.iter().zip(exact) {
-            let value = domain.evaluate(model, &place);
-            let rounding = 1e-12 * (1.0 + exact.abs());
-            assert!(
-                Interval::centred(value.mid(), value.rad() + rounding).contains(exact),
-                "{value:?} {exact}"
-            );
-        }
-    }
-    let largest = models[..2 * n].iter().map(|m| m.remainder().mag()).fold(0.0, f64::max);
-    assert!(largest < 0.05 * tight, "{largest}");
-}
-
 /// The dynamics over any scalar uses only ring operations and division.
 #[test]
 fn interval_series_enclose_the_series_of_numbers() {

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use reachtube_robot::{
     BaseParameters, JointKind, Parameter, ParameterKind, Physicality, Robot, Workspace,
 };
-use reachtube_scalar::{Interval, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace};
+use reachtube_scalar::{Interval, TaylorPolynomial};
 
 const GRAVITY: f64 = 9.81;
 
@@ -193,11 +193,6 @@ proptest! {
         let rounding = 1e-12;
         let contains = |o: &Interval, m: &f64| (*o + Interval::centred(0.0, rounding)).contains(*m);
         prop_assert!(outer.iter().zip(&mass).all(|(o, m)| contains(o, m)));
-        let space = TaylorSpace::new(4, 3).unwrap();
-        let (sin, cos) = robot.sin_cos(&TaylorBox::new(&space, &sides).variables());
-        let mut models = vec![TaylorModel::from(0.0); 16];
-        robot.crba(&sin, &cos, &mut Workspace::new(&robot), &mut models);
-        prop_assert!(models.iter().zip(&mass).all(|(o, m)| contains(&o.range(), m)));
     }
 }
 

@@ -22,4 +22,3 @@ mod powers;
 mod trigonometric;
 
 pub use closed::Interval;
-pub use decimal::DecimalError;

@@ -147,18 +147,6 @@ impl<C: Scalar> TaylorPolynomial<C> {
         }
     }
 
-    /// Returns the same polynomial, stored as a dense series up to its degree where that series
-    /// fits. Products of polynomials with most of the terms up to their degree are faster then.
-    #[must_use]
-    pub fn stored_densely(self) -> Self {
-        match &self.form {
-            Form::Sparse(space, _) if space.fits_dense() => {
-                Self::dense(space, self.coefficients(space))
-            }
-            _ => self,
-        }
-    }
-
     /// Converts a list of terms to a dense series where it fills much of its space.
     fn densified(self) -> Self {
         match &self.form {

@@ -2,8 +2,6 @@
 
 use core::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use num_traits::{One, Zero};
-
 use super::bounds::{PARTIAL_SUMS, inflated};
 use super::model::TaylorModel;
 use crate::interval::closed::Interval;
@@ -122,22 +120,5 @@ impl SubAssign for TaylorModel {
 impl MulAssign for TaylorModel {
     fn mul_assign(&mut self, rhs: Self) {
         *self = self.product(&rhs);
-    }
-}
-
-impl Zero for TaylorModel {
-    fn zero() -> Self {
-        Self::from(0.0)
-    }
-
-    /// Returns whether the model is exactly the number zero.
-    fn is_zero(&self) -> bool {
-        self.remainder == Interval::ZERO && self.polynomial.is_zero()
-    }
-}
-
-impl One for TaylorModel {
-    fn one() -> Self {
-        Self::from(1.0)
     }
 }

@@ -7,17 +7,11 @@
 //! 3. `model`: the type [`TaylorModel`].
 //! 4. `product`: products and multiples.
 //! 5. `arithmetic`: sums, and the operators `+`, `-` and `*`.
-//! 6. `division`: quotients and the operator `/`.
-//! 7. `functions`: elementary functions.
-//! 8. `tight`: closer bounds by branch and bound.
-//! 9. `goal`: bounds as close as a goal asks for.
-//! 10. `taylor_box`: the box that models are defined over.
+//! 6. `tight`: closer bounds by branch and bound.
+//! 7. `taylor_box`: the box that models are defined over.
 
 mod arithmetic;
 mod bounds;
-mod division;
-mod functions;
-mod goal;
 mod model;
 mod polarisation;
 mod product;

@@ -1,9 +1,7 @@
 //! The type [`TaylorModel`]: constructors, accessors and range.
 
 use super::bounds;
-use crate::dispatch::Dispatch;
 use crate::interval::closed::Interval;
-use crate::powers::Powers;
 use crate::taylor::polynomial::TaylorPolynomial;
 
 /// A Taylor model: an enclosure of a function over a box by a truncated polynomial plus a remainder
@@ -12,11 +10,10 @@ use crate::taylor::polynomial::TaylorPolynomial;
 /// The polynomial is a function of the normalised coordinates t ∈ [-1, 1]^k of the box: variable i
 /// of a [`TaylorBox`](crate::TaylorBox) is mid_i + rad_i t_i. Operations truncate it at the order
 /// of its [`TaylorSpace`](crate::TaylorSpace). The remainder encloses the truncation error and
-/// every rounding error. A number belongs to every space, so that dynamics over
-/// [`Scalar`](crate::Scalar) can be evaluated over Taylor models.
+/// every rounding error. A number belongs to every space.
 ///
-/// The remainder is [`Interval::ENTIRE`] where an operation has no bound, such as a quotient by a
-/// model whose range contains zero. Coefficients are always finite.
+/// The remainder is [`Interval::ENTIRE`] where an operation has no bound. Coefficients are always
+/// finite.
 ///
 /// Makino, Berz: Taylor models and other validated functional inclusion methods, Int. J. Pure Appl.
 /// Math. 4 (2003).
@@ -29,22 +26,21 @@ use crate::taylor::polynomial::TaylorPolynomial;
 ///
 /// # Panics
 ///
-/// Operations panic where the operands belong to spaces that differ in variables or order. A
-/// quotient panics where its dense series does not fit
-/// ([`TaylorSpace::check_dense`](crate::TaylorSpace::check_dense)).
+/// Operations panic where the operands belong to spaces that differ in variables or order.
 ///
 /// # Examples
 ///
 /// ```
-/// use reachtube_scalar::{Elementary, Interval, TaylorBox, TaylorSpace};
+/// use reachtube_scalar::{Interval, TaylorBox, TaylorSpace};
 ///
-/// let space = TaylorSpace::new(1, 5).unwrap();
-/// let joint = TaylorBox::new(&space, &[Interval::new(0.4, 0.6).unwrap()]);
-/// let (sin, cos) = joint.variable(0).sin_cos();
-/// assert!(sin.remainder().mag() < 2e-9);
-/// assert!(joint.evaluate(&sin, &[Interval::point(0.45)]).contains(0.45f64.sin()));
-/// // Both depend on the same angle. Interval arithmetic would give a width of 0.27.
-/// assert!((sin.clone() * sin + cos.clone() * cos).range().width() < 4e-7);
+/// let space = TaylorSpace::new(1, 3).unwrap();
+/// let side = TaylorBox::new(&space, &[Interval::new(0.4, 0.6).unwrap()]);
+/// let x = side.variable(0);
+/// let square = &x * &x;
+/// assert!(square.remainder().mag() < 1e-15);
+/// assert!(side.evaluate(&square, &[Interval::point(0.45)]).contains(0.45 * 0.45));
+/// // Both factors are the same number. Interval arithmetic would give a width of 0.4.
+/// assert!((square - &x * &x).range().width() < 1e-14);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct TaylorModel {
@@ -92,11 +88,6 @@ impl TaylorModel {
         let is_exact = self.polynomial.space().is_none() && self.remainder == Interval::ZERO;
         is_exact.then(|| self.polynomial.constant_term())
     }
-
-    /// Returns the model with `more` added to the remainder.
-    pub(super) fn widened(self, more: Interval) -> Self {
-        Self::new(self.polynomial, self.remainder + more)
-    }
 }
 
 impl From<f64> for TaylorModel {
@@ -135,7 +126,3 @@ impl From<Interval> for TaylorModel {
         Self::new(TaylorPolynomial::constant(x.mid()), x - x.mid())
     }
 }
-
-impl Powers for TaylorModel {}
-
-impl Dispatch for TaylorModel {}

@@ -52,7 +52,7 @@ impl TaylorModel {
     }
 
     /// Returns k · self for a finite k.
-    pub(super) fn scaled(&self, k: f64) -> Self {
+    fn scaled(&self, k: f64) -> Self {
         if k == 0.0 {
             return Self::from(0.0);
         }
@@ -63,7 +63,12 @@ impl TaylorModel {
     }
 
     /// Returns self / k for a finite k ≠ 0.
-    pub(super) fn divided(&self, k: f64) -> Self {
+    ///
+    /// # Guarantee
+    ///
+    /// Outer.
+    #[must_use]
+    pub fn divided(&self, k: f64) -> Self {
         let Some(error) = scaling_error(&self.polynomial, k.recip().abs(), is_power_of_two(k))
         else {
             return Self::from(self.range() / Interval::point(k));

@@ -79,7 +79,7 @@ impl SlopeBounds {
 }
 
 /// A branch-and-bound search for an upper bound of a polynomial.
-pub(super) struct PolynomialSearch<'a> {
+struct PolynomialSearch<'a> {
     space: &'a TaylorSpace,
     /// Σ |c| over the whole box.
     total: f64,
@@ -90,19 +90,19 @@ pub(super) struct PolynomialSearch<'a> {
 }
 
 /// A part of the box, with the polynomial in the part's own coordinates.
-pub(super) struct SubBox {
+struct SubBox {
     terms: Terms,
     /// Bound of the rounding errors of the terms.
     error: f64,
     /// Upper bound over the part, with the error.
-    pub bound: f64,
+    bound: f64,
     /// The variable to cut; `None` where the bound cannot become smaller.
-    pub cut: Option<usize>,
+    cut: Option<usize>,
 }
 
 impl<'a> PolynomialSearch<'a> {
     /// Prepares a search for a polynomial whose magnitudes of coefficients sum up to `total`.
-    pub(super) fn new(space: &'a TaylorSpace, total: f64) -> Self {
+    fn new(space: &'a TaylorSpace, total: f64) -> Self {
         let slopes = vec![SlopeBounds::default(); space.variables()];
         Self { space, total, attained: f64::NEG_INFINITY, slopes, factors: Vec::new() }
     }
@@ -122,7 +122,7 @@ impl<'a> PolynomialSearch<'a> {
     }
 
     /// Bounds a polynomial over a part, given by its terms in the part's coordinates.
-    pub(super) fn part(&mut self, mut terms: Terms, mut error: f64) -> SubBox {
+    fn part(&mut self, mut terms: Terms, mut error: f64) -> SubBox {
         // Fix the variables in which the polynomial is monotonic, until none is left.
         loop {
             self.differentiate(&terms);
@@ -141,14 +141,6 @@ impl<'a> PolynomialSearch<'a> {
             .max_by(|i, j| self.slopes[*i].non_linear.total_cmp(&self.slopes[*j].non_linear))
             .filter(|i| self.slopes[*i].non_linear > 0.0);
         SubBox { terms, error, bound: add_up(bound, error), cut }
-    }
-
-    /// Returns the bounds over the two halves of a part.
-    pub(super) fn halves(&mut self, part: &SubBox, cut: usize) -> [SubBox; 2] {
-        self.halved_terms(part, cut).map(|(terms, error)| {
-            let half = self.part(terms, error);
-            SubBox { bound: half.bound.min(part.bound), ..half }
-        })
     }
 
     /// Computes the slope in each variable.

@@ -1,19 +1,24 @@
 //! Tests that every operation of a Taylor model encloses the exact function over its box, with a
 //! remainder near the sampled error.
 
-use std::f64::consts::PI;
+use core::ops::{Add, Mul, Sub};
 use std::sync::Arc;
 
 use crate::common::*;
 use num_rational::BigRational;
-use num_traits::{One, Zero};
 use proptest::prelude::*;
-use reachtube_scalar::{Elementary, Interval, Scalar, TaylorBox, TaylorModel, TaylorSpace};
+use reachtube_scalar::{Interval, TaylorBox, TaylorModel, TaylorSpace};
 
-/// A function that can be evaluated over any scalar with elementary functions.
+/// A type with ring operations.
+trait Ring: Clone + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+
+impl Ring for Interval {}
+impl Ring for TaylorModel {}
+
+/// A function that can be evaluated over any ring.
 trait Function {
     const NAME: &'static str;
-    fn at<S: Elementary>(x: &[S]) -> S;
+    fn at<S: Ring>(x: &[S]) -> S;
 }
 
 macro_rules! functions {
@@ -22,7 +27,7 @@ macro_rules! functions {
             struct $Name;
             impl Function for $Name {
                 const NAME: &'static str = stringify!($Name);
-                fn at<S: Elementary>($x: &[S]) -> S {
+                fn at<S: Ring>($x: &[S]) -> S {
                     $value
                 }
             }
@@ -34,14 +39,14 @@ macro_rules! functions {
     };
 }
 
-fn sum_of<S: Scalar>(x: &[S]) -> S {
+fn sum_of<S: Ring>(x: &[S]) -> S {
     x.iter()
         .enumerate()
         .fold(S::from(0.25), |sum, (i, x)| sum + x.clone() * S::from(0.5 - 0.2 * i as f64))
 }
 
 /// A function that is positive over the box: 2 + small linear and quadratic parts.
-fn positive<S: Scalar>(x: &[S]) -> S {
+fn positive<S: Ring>(x: &[S]) -> S {
     S::from(2.0) + x[0].clone() * x[1].clone() * S::from(0.3) - sum_of(x) * S::from(0.2)
 }
 
@@ -51,16 +56,6 @@ functions! {
     Product |x| positive(x) * sum_of(x) * x[2].clone();
     Cube |x| { let s = sum_of(x); s.clone() * s.clone() * s };
     Power |x| { let s = positive(x); let q = s.clone() * s; q.clone() * q.clone() * q };
-    Quotient |x| sum_of(x) / positive(x);
-    QuotientByNumber |x| (sum_of(x) * x[0].clone() + x[2].clone()) / S::from(3.0);
-    Reciprocal |x| S::one() / positive(x);
-    Root |x| positive(x).sqrt();
-    Exponential |x| (x[0].clone() * x[1].clone() + sum_of(x)).exp();
-    Logarithm |x| positive(x).ln();
-    Sine |x| (positive(x) * x[0].clone()).sin_cos().0;
-    Cosine |x| (positive(x) + x[2].clone() * x[2].clone()).sin_cos().1;
-    Angle |x| sum_of(x).atan2(&positive(x));
-    AngleBehind |x| positive(x).atan2(&(sum_of(x) - S::from(1.5)));
 }
 
 fn sides(half: f64) -> [Interval; 3] {
@@ -260,10 +255,8 @@ proptest! {
         check("-", &a - &b, pairs().map(|(x, y)| x - y).collect());
         check("*", &a * &b, pairs().map(|(x, y)| x * y).collect());
         check("range", TaylorModel::from(a.range()), xs.to_vec());
-        let divides = !b.range().contains_zero();
-        let quotients = pairs().filter(|_| divides).map(|(x, y)| x / y).collect();
-        check("/", &a / &b, quotients);
-        prop_assert!(divides || (&a / &b).remainder() == Interval::ENTIRE);
+        check("/ 3", a.divided(3.0), xs.iter().map(|x| x / integer(3)).collect());
+        check("/ 1e-300", a.divided(1e-300), xs.iter().map(|x| x / exact(1e-300)).collect());
     }
 }
 
@@ -278,16 +271,17 @@ fn numbers_stay_exact() {
     let domain = TaylorBox::new(&space, &[Interval::new(1.0, 2.0).unwrap(), Interval::point(0.3)]);
     let x = domain.variable(0);
     assert_eq!((x.remainder(), domain.variable(1)), (Interval::ZERO, TaylorModel::from(0.3)));
-    assert_eq!(x.clone() + TaylorModel::zero(), x);
-    assert_eq!(x.clone() * TaylorModel::one(), x);
-    assert!((x.clone() * TaylorModel::zero()).is_zero() && (x.clone() - x.clone()).is_zero());
+    let number = TaylorModel::from;
+    assert_eq!(x.clone() + number(0.0), x);
+    assert_eq!(x.clone() * number(1.0), x);
+    assert_eq!((x.clone() * number(0.0)).range(), Interval::ZERO);
+    assert_eq!((x.clone() - x.clone()).range(), Interval::ZERO);
     assert_eq!(
         x.clone() * TaylorModel::from(-4.0),
         -(x.clone() + x.clone() + x.clone() + x.clone())
     );
-    assert_eq!(TaylorModel::zero().sin_cos(), (TaylorModel::zero(), TaylorModel::one()));
-    assert_eq!(x.clone() / TaylorModel::from(0.5), x.clone() + x);
-    assert_eq!(TaylorModel::from(Interval::ENTIRE) * TaylorModel::zero(), TaylorModel::zero());
+    assert_eq!(x.divided(0.5), x.clone() + x);
+    assert_eq!(TaylorModel::from(Interval::ENTIRE) * number(0.0), number(0.0));
 }
 
 /// The truncated part of a square is not negative.
@@ -313,13 +307,11 @@ fn operations_without_bounds_give_entire() {
     let space = TaylorSpace::new(1, 4).unwrap();
     let domain = TaylorBox::new(&space, &[Interval::new(-0.5, 1.0).unwrap()]);
     let x = domain.variable(0);
-    let entire = x.recip();
+    let entire = TaylorModel::from(Interval::ENTIRE);
     assert_eq!((entire.remainder(), entire.range()), (Interval::ENTIRE, Interval::ENTIRE));
     for model in [
-        TaylorModel::from(1.0) / TaylorModel::zero(),
         entire.clone() + x.clone(),
         entire.clone() * x.clone(),
-        x.clone() / entire.clone(),
         TaylorModel::from(f64::NAN),
         TaylorModel::from(f64::MAX) * TaylorModel::from(2.0) * x.clone(),
         (x.clone() + TaylorModel::from(f64::MAX)) + TaylorModel::from(f64::MAX),
@@ -335,31 +327,7 @@ fn operations_without_bounds_give_entire() {
     let pair =
         TaylorBox::new(&TaylorSpace::new(2, 4).unwrap(), &[Interval::centred(0.0, f64::MAX); 2]);
     assert_eq!((pair.variable(0) + pair.variable(1)).range(), Interval::ENTIRE);
-    assert_eq!(x.ln().range().lo(), f64::NEG_INFINITY);
-    assert!(x.sqrt().range().encloses(&Interval::new(0.0, 1.0).unwrap()));
-    assert!(entire.sin_cos().0.range().encloses(&Interval::new(-1.0, 1.0).unwrap()));
-    let whole = entire.atan2(&x).range();
-    assert!(whole.encloses(&Interval::new(-PI, PI).unwrap()) && whole.width() < 7.0);
     // A model is valid only inside the box.
     assert_eq!(domain.evaluate(&x, &[Interval::point(1.01)]), Interval::ENTIRE);
     assert_eq!(TaylorBox::new(&space, &[Interval::ENTIRE]).variable(0).range(), Interval::ENTIRE);
-}
-
-/// The angle jumps at the cut, so a box that crosses it gives an interval without a polynomial.
-#[test]
-fn angles_at_the_cut() {
-    let space = TaylorSpace::new(2, 3).unwrap();
-    let across = TaylorBox::new(
-        &space,
-        &[Interval::new(-2.0, -1.0).unwrap(), Interval::new(-0.1, 0.1).unwrap()],
-    );
-    let angle = across.variable(1).atan2(&across.variable(0)).range();
-    assert!(angle.contains(3.1) && angle.contains(-3.1));
-    let beside = TaylorBox::new(
-        &space,
-        &[Interval::new(-2.0, -1.0).unwrap(), Interval::new(0.0, 0.1).unwrap()],
-    );
-    let angle = beside.variable(1).atan2(&beside.variable(0));
-    assert!(angle.range().encloses(&Interval::new(3.05, PI).unwrap()) && angle.range().lo() > 3.0);
-    assert!(angle.remainder().mag() < 4e-3); // the interval of values alone would have 0.05
 }

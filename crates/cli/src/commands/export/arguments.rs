@@ -27,8 +27,6 @@ Tools, what they can mean, and what they cannot:
               cubic one. urdf has no motor inertia; --update changes a URDF that is there
   sara-shield the radius by which the safety shield SaRA must grow each link, proved; limits in
               its file that --update names, cut to what the motions reach
-  armour      the header of the planner ARMOUR, with proved bounds of the mass matrix for all arms
-              within --uncertainty
 Unsupported models are refused. The first lines of each file state what the tool computes.
 
 Examples:
@@ -38,8 +36,6 @@ Examples:
   reachtube export --robot identified.toml --to urdf --update arm.urdf --out robot
   reachtube export --model model.json --to sara-shield --data recordings --suites A --until 0.2 \\
     --update robot_parameters_schunk.yaml --out shield
-  reachtube export --robot arm.toml --to armour --capsules capsules.toml --uncertainty 0.03 \\
-    --torque-limits 56,56,29 --out armour
 
 Each suite, or run with a nominal motion of its own, gets a folder, which also holds our bounds
 (bounds.csv at samples, tube.csv between them) and the input (inputs.csv). docs/export.md says how
@@ -55,7 +51,6 @@ const TARGETS: Choices = &[
     ("mjcf", "MuJoCo, the robot"),
     ("urdf", "the robot"),
     ("sara-shield", "SaRA shield"),
-    ("armour", "ARMOUR"),
 ];
 
 const FORMS: Choices = &[
@@ -71,7 +66,7 @@ pub(crate) struct Arguments {
     /// Model file that `model` or `conform` wrote
     #[arg(long, value_name = "FILE", required_unless_present = "robot")]
     pub model: Option<PathBuf>,
-    /// Robot in place of a model, for mjcf, urdf and armour
+    /// Robot in place of a model, for mjcf and urdf
     #[arg(long, value_name = "ROBOT", conflicts_with = "model")]
     pub robot: Option<String>,
     #[command(flatten)]
@@ -80,18 +75,9 @@ pub(crate) struct Arguments {
     /// text stays as it is
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub update: Vec<PathBuf>,
-    /// The links' capsules, for sara-shield and armour: a TOML or URDF file [default: the embedded
-    /// robot's]
+    /// The links' capsules, for sara-shield: a TOML or URDF file [default: the embedded robot's]
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     pub capsules: Option<PathBuf>,
-    /// Ratio from 0 to below 1 by which masses and inertias may differ, for armour
-    #[arg(long, value_name = "RATIO", required_if_eq("to", "armour"), hide_short_help = true)]
-    #[arg(allow_negative_numbers = true)]
-    pub uncertainty: Option<f64>,
-    /// Largest torque of each joint, for armour, N m
-    #[arg(long, value_name = "T1,..", value_delimiter = ',', required_if_eq("to", "armour"))]
-    #[arg(hide_short_help = true, allow_negative_numbers = true)]
-    pub torque_limits: Vec<f64>,
     /// What to write
     #[arg(long, value_name = "TOOL", value_parser = choice::<Target>(TARGETS))]
     pub to: Target,
@@ -132,8 +118,6 @@ pub(crate) enum Target {
     /// The files of the shield SaRA.
     #[serde(rename = "sara-shield")]
     SaraShield,
-    /// The header of the planner ARMOUR.
-    Armour,
     /// A model for a tool.
     #[serde(untagged)]
     Tool(Tool),
@@ -146,7 +130,6 @@ impl Target {
             Self::Mjcf => "MuJoCo".into(),
             Self::Urdf => "URDF".into(),
             Self::SaraShield => "the SaRA shield".into(),
-            Self::Armour => "ARMOUR".into(),
             Self::Tool(tool) => tool.to_string(),
         }
     }
@@ -156,8 +139,6 @@ impl Target {
 pub(super) fn refuse_unused(args: &Arguments) -> Result<()> {
     let to = args.to;
     let has_recordings = matches!(to, Target::Tool(_) | Target::SaraShield);
-    let has_capsules = matches!(to, Target::SaraShield | Target::Armour);
-    let is_armour = matches!(to, Target::Armour);
     // The joints of a URDF that is changed may be locked in the model.
     let has_locks = args.robot.is_some() || !args.update.is_empty();
     let options = [
@@ -166,9 +147,7 @@ pub(super) fn refuse_unused(args: &Arguments) -> Result<()> {
         ("until", args.until.is_some(), has_recordings),
         ("max-gap", args.max_gap.is_some(), has_recordings),
         ("input", args.input.is_some(), matches!(to, Target::Tool(_))),
-        ("capsules", args.capsules.is_some(), has_capsules),
-        ("uncertainty", args.uncertainty.is_some(), is_armour),
-        ("torque-limits", !args.torque_limits.is_empty(), is_armour),
+        ("capsules", args.capsules.is_some(), matches!(to, Target::SaraShield)),
         ("lock", !args.lock.lock.is_empty(), has_locks && !matches!(to, Target::SaraShield)),
     ];
     match options.into_iter().find(|(_, is_given, is_used)| *is_given && !is_used) {

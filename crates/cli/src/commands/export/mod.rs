@@ -1,7 +1,6 @@
 //! `reachtube export`: models and robots as other tools read them.
 
 mod arguments;
-mod armour;
 mod shield;
 
 use std::path::{Path, PathBuf};
@@ -47,7 +46,6 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         Target::Mjcf => robot(args, &mjcf_files, json),
         Target::Urdf => robot(args, &updated, json),
         Target::SaraShield => shield::run(args, json),
-        Target::Armour => armour::run(args, json),
         Target::Tool(tool) => model(args, tool, json),
     }
 }

@@ -124,7 +124,6 @@ pub(super) const CASES: &[Case] = &[
         "robot show arm.toml --expansion 1",
         &["--expansion lists 1; give 2 positions"],
     ),
-    case("a box with too few radii", "abstract --robot arm.toml --box 1,2", &["2 radii", "give 3"]),
     Case {
         what: "windows longer than the logs",
         spoil: |lab| {

@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use crate::advice::Advice;
 use crate::data::input::RunInput;
 use crate::data::settings::{NominalStart, Settings};
-use crate::data::setup::{Drive, Setup, read_options, side};
+use crate::data::setup::{Drive, Setup, read_options};
 use crate::data::shape::Shape;
 use crate::error::{Error, Result};
 
@@ -19,8 +19,6 @@ pub(crate) struct Context {
     pub options: ReadOptions,
     /// Whether every run has a nominal motion of its own, whatever its input.
     pub is_own: bool,
-    /// The box that runs must start in, 2n, where there is one.
-    pub start_box: Option<Vec<[f64; 2]>>,
     /// SHA-256 of all this.
     pub digest: [u8; 32],
 }
@@ -43,16 +41,13 @@ impl Context {
         }
         let is_own = settings.nominal == NominalStart::Own
             || setup.condition.is_none() && setup.differs_by_run();
-        let start_box = settings.operating_box.as_ref();
-        let start_box =
-            start_box.map(|sides| (0..dynamics.states()).map(|i| side(sides, i)).collect());
         let options = read_options(setup);
-        let parts = (drive.identity(), settings.until, &start_box, is_own);
+        let parts = (drive.identity(), settings.until, is_own);
         let mut text = serde_json::to_string(&parts).expect("settings have string keys");
         text += &format!("{:?}", options.gap_limit);
         let digest = Sha256::digest(text).into();
         let shape = Shape { states: dynamics.states(), inputs: dynamics.inputs() };
-        Ok(Self { drive: Arc::clone(drive), shape, options, is_own, start_box, digest })
+        Ok(Self { drive: Arc::clone(drive), shape, options, is_own, digest })
     }
 
     /// Returns the input along a run.

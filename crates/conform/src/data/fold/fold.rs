@@ -81,8 +81,7 @@ pub(super) struct FoldState {
 
 impl Fold {
     /// Returns the fold of no recording. The robot, the kind of torque, the end of the runs, the
-    /// limit of gaps, the operating box and the nominal start of `setup` decide how recordings are
-    /// read.
+    /// limit of gaps and the nominal start of `setup` decide how recordings are read.
     ///
     /// # Errors
     ///
@@ -213,7 +212,7 @@ impl Fold {
                 let mut own = Envelope::new(2 * run.joints);
                 let known = self.state.suites.get_mut(suite).map(|known| &mut known.envelope);
                 known.unwrap_or(&mut own).include(place, &run.states);
-                let one = SuiteFold::of(place, entry, run, input, &self.context, own);
+                let one = SuiteFold::of(place, entry, run, input, own);
                 self.state.runs += 1;
                 self.take_suite(suite, one);
             }
@@ -316,7 +315,7 @@ impl fmt::Debug for Fold {
 pub(super) fn other_setup() -> Error {
     Error::Fold(
         "a fold was made with another setup: the robot, the kind of torque, the end of the runs, \
-         the limit of gaps, the operating box, the nominal start, the limit of memory and the \
+         the limit of gaps, the nominal start, the limit of memory and the \
          model to check must be the same; fold all recordings with one setup"
             .into(),
     )

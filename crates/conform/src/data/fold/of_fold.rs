@@ -56,9 +56,6 @@ impl Problem {
         for (name, suite) in &folds {
             suite.check(name, &context, state.most_bytes)?;
         }
-        for (_, suite) in &folds {
-            suite.check_starts(&context)?;
-        }
         let (mut entries, mut kept) = (BTreeMap::new(), HashMap::new());
         let mut suites = Vec::with_capacity(folds.len());
         for (name, fold) in folds {

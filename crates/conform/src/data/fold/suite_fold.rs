@@ -2,7 +2,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use reachtube_reach::TimeGrid;
-use reachtube_recordings::{Run, RunEntry, State};
+use reachtube_recordings::{Run, RunEntry};
 use serde::{Deserialize, Serialize};
 
 use crate::advice::Advice;
@@ -38,8 +38,6 @@ pub(super) struct SuiteFold {
     pub runs: BTreeMap<u32, RunSummary>,
     /// File, and place in the order of the suite, of every run that anything may name.
     pub names: BTreeMap<u32, (String, u64)>,
-    /// The first run that starts outside the operating box: state and value.
-    pub outside: Option<(u32, usize, f64)>,
     /// Number of names that were looked through last.
     #[serde(skip)]
     pub settled: usize,
@@ -53,19 +51,15 @@ impl SuiteFold {
         entry: &RunEntry,
         run: Run,
         input: RunInput,
-        context: &Context,
         envelope: Envelope,
     ) -> Self {
         let summary = RunSummary::new(place as usize, entry, &run, Arc::clone(&input.grid));
-        let outside = context.start_box.iter().flatten().zip(run.state(0)).enumerate();
-        let mut outside = outside.filter(|(_, ([low, high], x))| !(low..=high).contains(x));
         Self {
             motion: entry.motion.clone().map(|motion| (place, motion)),
             totals: Totals::of(&summary),
             envelope,
             shared: Some(SharedInput { run: place, input: input.clone() }),
             names: [(place, (entry.file.clone(), entry.order))].into(),
-            outside: outside.next().map(|(state, (_, value))| (place, state, *value)),
             runs: [(place, summary)].into(),
             whole: WholeRuns::one(place, WholeRun { run, input }),
             settled: 0,
@@ -84,8 +78,6 @@ impl SuiteFold {
         replace(&mut self.whole, |whole| whole.merge(other.whole, context, most_bytes));
         self.runs.extend(other.runs);
         self.names.extend(other.names);
-        let outside = self.outside.into_iter().chain(other.outside);
-        self.outside = outside.min_by_key(|(place, ..)| *place);
     }
 
     /// Drops what no later step needs; `are_listed` says whether the data set lists its runs. With
@@ -101,7 +93,7 @@ impl SuiteFold {
         }
         if now || self.names.len() > 2 * self.settled + MOST_SUPERFLUOUS {
             let mut needed: Vec<u32> = self.envelope.owners().collect();
-            needed.extend(self.runs.keys().chain(self.outside.iter().map(|(place, ..)| place)));
+            needed.extend(self.runs.keys());
             needed.extend(self.whole.iter().map(|(place, _)| place));
             needed.sort_unstable();
             self.names.retain(|place, _| needed.binary_search(place).is_ok());
@@ -165,22 +157,6 @@ impl SuiteFold {
             && self.shared.as_ref().is_none_or(|shared| is_valid(&shared.input))
             && self.runs.values().all(|run| run.is_valid_for(dimension))
             && places.chain(self.envelope.owners()).all(is_named)
-            && self.outside.is_none_or(|(at, i, _)| is_named(at) && i < dimension)
-    }
-
-    /// Returns the first run that starts outside the operating box.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::StartsOutsideBox`].
-    pub(super) fn check_starts(&self, context: &Context) -> Result<()> {
-        let (Some((place, state, value)), Some(sides)) = (self.outside, &context.start_box) else {
-            return Ok(());
-        };
-        let [low, high] = sides[state];
-        let file = self.names[&place].0.clone();
-        let state = State::from_index(state, context.shape.inputs);
-        Err(Error::StartsOutsideBox { file, state, value, low, high })
     }
 }
 

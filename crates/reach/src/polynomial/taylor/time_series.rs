@@ -86,7 +86,7 @@ impl TimeSeries {
                 }
             }
             let count = i as f64 + 1.0;
-            let next = &(&sum * h) / &TaylorModel::from(count);
+            let next = (&sum * h).divided(count);
             self.defects[state].push(next.remainder() * count);
             self.terms[state].push(TaylorModel::from(next.polynomial().clone()));
         }

@@ -16,7 +16,6 @@ use std::path::Path;
 
 use reachtube_robot::{Lock, Robot};
 
-pub(super) use attributes::SimulatedFriction;
 pub(super) use bodies::{Body, bodies};
 pub use mjcf::{Damping, mjcf};
 pub use urdf::{UrdfFiles, updated_urdf, urdf};

@@ -1,5 +1,5 @@
-//! Frames and capsules as the files of the shield and of ARMOUR have them: each frame turns about
-//! its z axis.
+//! Frames and capsules as the files of the shield have them: each frame turns about its z
+//! axis.
 
 use std::fmt::Write;
 
@@ -15,7 +15,7 @@ use crate::export::text::{harmless, number, numbers};
 const ROUNDING: f64 = 1e-9;
 
 /// The links of a robot in frames that turn about z.
-pub(in crate::export) struct Frames {
+pub(super) struct Frames {
     /// The turn from each frame to the joint's: its z is the axis.
     turns: Vec<Matrix3<f64>>,
     /// Each frame in the one before, at q = 0.
@@ -25,20 +25,18 @@ pub(in crate::export) struct Frames {
 }
 
 /// A link in such a frame.
-pub(in crate::export) struct FramedBody {
+struct FramedBody {
     /// Mass \[kg\].
     pub mass: f64,
     /// Centre of mass \[m\].
     pub com: [f64; 3],
     /// Inertia about the centre of mass \[kg m²\].
     pub inertia: Matrix3<f64>,
-    /// Motor inertia on the link side \[kg m²\].
-    pub armature: f64,
 }
 
 impl Frames {
     /// Takes the frames of a robot whose joints all turn, and one capsule per link.
-    pub(in crate::export) fn new(robot: &Robot, capsules: &Capsules) -> Result<Self, ExportError> {
+    pub(super) fn new(robot: &Robot, capsules: &Capsules) -> Result<Self, ExportError> {
         let refused = |joint: usize, problem: &str, remedy: &str| ExportError::Refused {
             place: format!("{}: joint {}", robot.name(), robot.joints()[joint].name),
             problem: problem.into(),
@@ -82,13 +80,13 @@ impl Frames {
     /// # Errors
     ///
     /// As [`bodies`].
-    pub(in crate::export) fn bodies(&self, robot: &Robot) -> Result<Vec<FramedBody>, ExportError> {
+    fn bodies(&self, robot: &Robot) -> Result<Vec<FramedBody>, ExportError> {
         let framed = |(body, turn): (&Body, &Matrix3<f64>)| {
             let (mass, com, [xx, xy, xz, yy, yz, zz]) = body.inertia.about_own_com();
             let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
             let com = (turn.transpose() * Vector3::from(com)).into();
             let inertia = turn.transpose() * tensor * turn;
-            FramedBody { mass, com, inertia, armature: body.armature }
+            FramedBody { mass, com, inertia }
         };
         Ok(bodies(robot)?.iter().zip(&self.turns).map(framed).collect())
     }
