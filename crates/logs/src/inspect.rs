@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use reachtube_recordings::{
     Defect, Inspection, LogSettings, LoggedOptions, MemoryRuns, ReadOptions, Run, RunEntry,
-    RunSource, Understood, check_limits, inspect_source, is_recording, read_csv, read_logged,
+    RunSource, Understood, check_limits, inspect_source, read_logged,
 };
 use serde::Serialize;
 
@@ -40,12 +40,12 @@ pub fn inspect_logs(
     let mut inspection = inspect_source(&runs, path.display().to_string(), options.gap_limit);
     let found = runs.found.into_inner().unwrap_or_default();
     inspection.notes.extend(found.iter().flatten().flat_map(|(_, notes)| notes.clone()));
-    let logs = found.into_iter().flatten().map(|(understood, _)| understood).collect();
+    let logs = found.into_iter().flatten().filter_map(|(understood, _)| understood).collect();
     Ok(LogInspection { inspection, logs })
 }
 
 /// What was understood of a log, and the notes about it.
-type Found = (Understood, Vec<String>);
+type Found = (Option<Understood>, Vec<String>);
 
 /// Logs as a source of recordings.
 #[derive(Debug)]
@@ -121,7 +121,7 @@ impl<'a> LoggedRuns<'a> {
         for (number, cut) in cuts.iter().enumerate() {
             let mut found = None;
             let read = logs[0].run(cut.samples.clone()).map(|run| {
-                found = Some((logs[0].understood(&run), vec![]));
+                found = Some((Some(logs[0].understood(&run)), vec![]));
                 let count = self.in_memory.runs().len();
                 self.in_memory.push(&path.display().to_string(), None, None, run);
                 count
@@ -186,14 +186,6 @@ impl RunSource for LoggedRuns<'_> {
             Content::Container(_, Ok(number)) => return self.in_memory.read(*number, options),
             Content::Container(_, Err(defects)) => return Err(defects.clone()),
         };
-        if let [file] = &files[..]
-            && is_recording(file, self.options.columns)
-        {
-            let run = self.checked(file, read_csv(file, options)?)?;
-            if !(0..run.joints).any(|joint| run.jumps_by_turns(joint)) {
-                return Ok(run);
-            }
-        }
         let options =
             LoggedOptions { gap_limit: options.gap_limit, until: options.until, ..self.options };
         let logged = read_logged(files, &options)?;

@@ -5,7 +5,6 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use crate::defect::{Defect, DefectKind};
-use crate::gap_limit::GapLimit;
 use crate::run::Run;
 use crate::source::ReadOptions;
 
@@ -38,7 +37,8 @@ impl Run {
             let defect = Defect::new(name, None, problem, remedy);
             return Err(vec![defect.of_kind(DefectKind::Joints)]);
         }
-        let gaps = gaps(name, &self, options.gap_limit);
+        let steps = self.times.windows(2).map(|pair| (None, pair[1] - pair[0]));
+        let gaps = options.gap_limit.gaps(name, steps.collect());
         if !gaps.is_empty() {
             return Err(gaps);
         }
@@ -57,20 +57,4 @@ impl Run {
         }
         self
     }
-}
-
-/// Returns a defect for each step of `run` that is longer than `limit` allows.
-fn gaps(name: &Path, run: &Run, limit: GapLimit) -> Vec<Defect> {
-    let steps: Vec<f64> = run.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let longest = limit.longest_step(steps.clone());
-    let defect = |(k, step): (usize, &f64)| {
-        let problem = format!(
-            "there is a gap of {step:.6} s before sample {}, but the limit is {longest:.6} s",
-            k + 1
-        );
-        let remedy = "samples are missing and the input there is unknown: record again, cut the \
-                      run, or raise the gap limit";
-        Defect::new(name, None, problem, remedy).of_kind(DefectKind::gap(*step))
-    };
-    steps.iter().enumerate().filter(|(_, step)| **step > longest).map(defect).collect()
 }

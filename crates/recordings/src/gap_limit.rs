@@ -1,3 +1,7 @@
+use std::path::Path;
+
+use crate::defect::{Defect, DefectKind};
+
 /// A longer step than this multiple of the usual one is a gap at a fixed rate. A missing sample
 /// makes the step twice as long, a late one less.
 const FIXED_RATE_GAP: f64 = 1.9;
@@ -29,6 +33,27 @@ impl From<Option<f64>> for GapLimit {
 }
 
 impl GapLimit {
+    /// Returns a defect for each of a run's steps, s, that is too long. A step has the line of the
+    /// sample after it, if the run is a file.
+    pub(crate) fn gaps(self, name: &Path, steps: Vec<(Option<u64>, f64)>) -> Vec<Defect> {
+        let longest = self.longest_step(steps.iter().map(|(_, step)| *step).collect());
+        let defect = |(k, (line, step)): (usize, (Option<u64>, f64))| {
+            let (sample, accept) = match line {
+                Some(_) => ("this sample".into(), "accept it with --max-gap SECONDS"),
+                None => (format!("sample {}", k + 1), "raise the gap limit"),
+            };
+            let problem = format!(
+                "there is a gap of {step:.6} s before {sample}, but the limit is {longest:.6} s"
+            );
+            let remedy = format!(
+                "samples are missing and the input there is unknown: record again, cut the run, \
+                 or {accept}"
+            );
+            Defect::new(name, line, problem, remedy).of_kind(DefectKind::gap(step))
+        };
+        steps.into_iter().enumerate().filter(|(_, (_, step))| *step > longest).map(defect).collect()
+    }
+
     /// Returns the longest step allowed, s, in a run with these steps, s, in any order.
     pub(crate) fn longest_step(self, mut steps: Vec<f64>) -> f64 {
         if let Self::Seconds(seconds) = self {

@@ -11,7 +11,8 @@
 //!   remedy. [`check_limits`] finds wrong units; [`run_notes`] and [`copies_note`] return notes.
 //! - [`Torque`] states what the recorded torques mean and returns the input u of the model.
 //! - [`inspect()`] summarises a data set.
-//! - [`read_logged`] reads CSV files of any header, as robots and drivers log them.
+//! - [`read_logged`] reads CSV files of any header, as robots and drivers log them, by the same
+//!   reader of numbers and defects.
 //!
 //! `docs/recordings.md` describes the format.
 //!
@@ -36,25 +37,19 @@ mod checked;
 mod data_set;
 mod decimal;
 mod defect;
-mod digits;
 mod error;
 mod even;
 mod gap_limit;
-mod header;
 mod index;
 mod inspect;
 mod inspect_run;
-mod lines;
-mod logged;
 mod memory;
 mod notes;
 mod order;
-mod other_format;
 mod pattern;
 mod preparation;
 mod reading;
 mod refusal;
-mod row;
 mod run;
 mod sample_error;
 mod sensor_noise;
@@ -63,7 +58,7 @@ mod state;
 mod text;
 mod torque;
 mod units;
-mod wraps;
+mod unwrap;
 
 pub use data_set::{DataSet, any_simulated, index_folder};
 pub use decimal::picoseconds;
@@ -73,15 +68,14 @@ pub use even::{EvenSamples, Sample};
 pub use gap_limit::GapLimit;
 pub use index::RunEntry;
 pub use inspect::{Inspection, JointSummary, RunGroup, inspect, inspect_source};
-pub use logged::{
-    AngleUnit, ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, TimeUnit, Understood,
-    csv_files, group_files, is_recording, read_logged,
-};
 pub use memory::MemoryRuns;
 pub use notes::{copies_note, run_notes};
 pub use pattern::matching;
 pub use preparation::Preparation;
-pub use reading::{parse_csv, read_csv};
+pub use reading::{
+    AngleUnit, ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, TimeUnit, Understood,
+    csv_files, group_files, parse_csv, read_csv, read_logged,
+};
 pub use refusal::{DefectPlace, Refusal};
 pub use run::{Run, RunError, column_names};
 pub use sample_error::SampleError;

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::logged::{ColumnSettings, LogSettings};
+use crate::reading::{ColumnSettings, LogSettings};
 use crate::torque::Torque;
 
 /// How logs become the recordings of a model: what was done to them before its sets were found, and

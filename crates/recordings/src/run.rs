@@ -1,5 +1,3 @@
-use crate::wraps::jumps;
-
 /// A recording: K samples of n joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
@@ -142,19 +140,6 @@ impl Run {
         Ok(self)
     }
 
-    /// Returns a run of `joints` joints without samples.
-    pub(crate) fn empty(joints: usize) -> Self {
-        Self {
-            joints,
-            start: 0.0,
-            times: vec![],
-            states: vec![],
-            torques: vec![],
-            temperatures: vec![],
-            sha256: String::new(),
-        }
-    }
-
     /// Returns the number of samples K.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -185,15 +170,6 @@ impl Run {
     #[inline]
     pub fn q(&self, k: usize) -> &[f64] {
         &self.state(k)[..self.joints]
-    }
-
-    /// Returns whether the position of a revolute joint (from 0) jumps by whole turns, as where a
-    /// log counts them from sensor to sensor.
-    #[must_use]
-    pub fn jumps_by_turns(&self, joint: usize) -> bool {
-        let q = |k: usize| self.q(k)[joint];
-        let is_far = (1..self.len()).any(|k| (q(k) - q(k - 1)).abs() > std::f64::consts::PI);
-        is_far && !jumps(&(0..self.len()).map(q).collect::<Vec<f64>>()).is_empty()
     }
 
     /// Returns the joint velocities at sample `k` (from 0), n, rad/s.

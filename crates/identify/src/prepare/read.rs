@@ -5,10 +5,8 @@ use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
 use crate::prepare::turns::{add_turns, extents, missing_turns};
 use reachtube_logs::LogFiles;
-use reachtube_recordings::{
-    Defect, LoggedOptions, ReadOptions, Run, check_limits, is_recording, read_csv, read_logged,
-};
-use reachtube_robot::{JointKind, Robot};
+use reachtube_recordings::{Defect, LoggedOptions, Run, check_limits, read_logged};
+use reachtube_robot::Robot;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -162,46 +160,7 @@ impl Source {
         robot: &Robot,
         settings: &PrepareSettings,
     ) -> Result<(Run, Vec<String>)> {
-        match files {
-            [file] if is_recording(file, &settings.columns) => {
-                let order = column_order(robot, &settings.joints)?;
-                let run = self.read_recording(file, robot, settings, &order)?;
-                match has_jumps(&run, robot) {
-                    // A log's reader takes them out, and names them.
-                    true => self.read_logged(files, robot, settings),
-                    false => Ok((run, vec![])),
-                }
-            }
-            files => {
-                column_order(robot, &settings.joints)?;
-                self.read_logged(files, robot, settings)
-            }
-        }
-    }
-
-    fn read_recording(
-        &self,
-        file: &Path,
-        robot: &Robot,
-        settings: &PrepareSettings,
-        order: &[usize],
-    ) -> Result<Run> {
-        let options = ReadOptions {
-            joints: Some(robot.joint_count()),
-            gap_limit: settings.gap_limit(),
-            until: self.until,
-        };
-        let run = read_csv(file, &options).map_err(refused)?;
-        Ok(reordered(run, order))
-    }
-
-    /// Reads columns of any name, which come in the order of the robot's joints.
-    fn read_logged(
-        &self,
-        files: &[PathBuf],
-        robot: &Robot,
-        settings: &PrepareSettings,
-    ) -> Result<(Run, Vec<String>)> {
+        check_names(robot, &settings.joints)?;
         let options = LoggedOptions {
             robot: Some(robot),
             joints: &settings.joints,
@@ -214,12 +173,6 @@ impl Source {
         let logged = read_logged(files, &options).map_err(refused)?;
         Ok((logged.run, logged.notes))
     }
-}
-
-/// Returns whether a revolute joint jumps by whole turns.
-fn has_jumps(run: &Run, robot: &Robot) -> bool {
-    let kinds = robot.kinds();
-    (0..run.joints).any(|joint| kinds[joint] == JointKind::Revolute && run.jumps_by_turns(joint))
 }
 
 /// Checks limits and times of a recording.
@@ -241,28 +194,14 @@ fn with_compensation(mut run: Run, robot: &Robot) -> Run {
     run
 }
 
-/// Returns the index of the column of each of the robot's joints.
-fn column_order(robot: &Robot, names: &[String]) -> Result<Vec<usize>> {
-    let n = robot.joint_count();
-    if names.is_empty() {
-        return Ok((0..n).collect());
+/// Checks that names are those of the robot's joints, if any are given.
+fn check_names(robot: &Robot, names: &[String]) -> Result<()> {
+    let joints: Vec<String> = robot.joints().iter().map(|joint| joint.name.clone()).collect();
+    let all = names.len() == joints.len() && joints.iter().all(|joint| names.contains(joint));
+    match names.is_empty() || all {
+        true => Ok(()),
+        false => Err(Error::JointNames { given: names.to_vec(), joints }),
     }
-    let joints = robot.joints().iter().map(|joint| joint.name.as_str());
-    let column = |name: &str| names.iter().position(|other| other == name);
-    let order: Option<Vec<usize>> = joints.clone().map(column).collect();
-    order.filter(|_| names.len() == n).ok_or_else(|| Error::JointNames {
-        given: names.to_vec(),
-        joints: joints.map(String::from).collect(),
-    })
-}
-
-fn reordered(run: Run, order: &[usize]) -> Run {
-    let n = run.joints;
-    let pick = |row: &[f64]| order.iter().map(|column| row[*column]).collect::<Vec<_>>();
-    let states = (0..run.len()).flat_map(|k| [pick(run.q(k)), pick(run.qd(k))].concat()).collect();
-    let torques = run.torques.chunks_exact(n).flat_map(pick).collect();
-    let temperatures = run.temperatures.chunks_exact(n).flat_map(pick).collect();
-    Run { states, torques, temperatures, ..run }
 }
 
 /// Removes the samples before `from` \[s\].
@@ -282,26 +221,25 @@ mod tests {
     #[test]
     fn columns_follow_the_names() {
         let robot = Robot::lwa4p();
-        let names = ["joint2", "joint1", "joint3", "joint4", "joint5", "joint6"].map(String::from);
-        assert_eq!(column_order(&robot, &names).unwrap(), [1, 0, 2, 3, 4, 5]);
-        assert!(
-            column_order(&robot, &names[..5])
-                .unwrap_err()
-                .to_string()
-                .contains("each of the robot's 6 joints")
-        );
-        let run = Run {
-            joints: 2,
-            start: 0.0,
-            times: vec![0.0],
-            states: vec![1.0, 2.0, 3.0, 4.0],
-            torques: vec![5.0, 6.0],
-            temperatures: vec![7.0, 8.0],
-            sha256: String::new(),
+        let joints = ["joint2", "joint1", "joint3", "joint4", "joint5", "joint6"].map(String::from);
+        let folder = tempfile::tempdir().unwrap();
+        let names = ["q", "qd", "tau", "temp"].map(|n| (1..=6).map(move |i| format!(",{n}{i}")));
+        let header: String = names.into_iter().flatten().collect();
+        let row = ",0.1,0.2,0.3,0.4,0.5,0.6,1,2,3,4,5,6,7,8,9,10,11,12,21,22,23,24,25,26";
+        let path = folder.path().join("a.csv");
+        std::fs::write(&path, format!("t{header}\n0{row}\n0.1{row}\n")).unwrap();
+        let read = |joints: &[String]| {
+            let settings = PrepareSettings { joints: joints.into(), ..PrepareSettings::default() };
+            let entry = LogEntry::Path("a.csv".into());
+            read(&[entry], folder.path(), &robot, &settings)
         };
-        let swapped = reordered(run, &[1, 0]);
-        assert_eq!(swapped.temperatures, [8.0, 7.0]);
-        assert_eq!((swapped.states, swapped.torques), (vec![2.0, 1.0, 4.0, 3.0], vec![6.0, 5.0]));
+        let error = read(&joints[..5]).unwrap_err().to_string();
+        assert!(error.contains("each of the robot's 6 joints"), "{error}");
+        let run = read(&joints).unwrap().remove(0).run;
+        assert_eq!(run.q(1), [0.2, 0.1, 0.3, 0.4, 0.5, 0.6]);
+        assert_eq!(run.qd(1), [2.0, 1.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(run.torque(1), [8.0, 7.0, 9.0, 10.0, 11.0, 12.0]);
+        assert_eq!(run.temperature(1), [22.0, 21.0, 23.0, 24.0, 25.0, 26.0]);
     }
 
     #[test]

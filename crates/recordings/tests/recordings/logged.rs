@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use reachtube_recordings::{
-    ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, is_recording,
-    read_logged,
+    ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, read_logged,
 };
 use reachtube_robot::Robot;
 use tempfile::TempDir;
@@ -149,7 +148,7 @@ fn dialects_of_many_drivers_are_one_recording() {
         let logged = read(&dialect.text(), &options(Some(&robot), &columns));
         let logged = logged.unwrap_or_else(|error| panic!("{}: {error}", dialect.header));
         check(&logged);
-        let ratio = logged.understood.ratio.unwrap();
+        let ratio = logged.understood.as_ref().unwrap().ratio.unwrap();
         assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
         let said = logged.notes.concat();
         assert_eq!(said.contains("the positions are in degrees"), dialect.per_radian > 1.0);
@@ -253,7 +252,7 @@ fn joints_and_torques_that_are_missing_are_named_with_the_remedy() {
     assert!(said.contains("motor currents: actual_current_0 to actual_current_5"), "{said}");
     assert!(said.contains("--gains"), "{said}");
     let with_gains = LoggedOptions { gains: true, ..options };
-    assert_eq!(read(&both, &with_gains).unwrap().understood.torque, "current");
+    assert_eq!(read(&both, &with_gains).unwrap().understood.unwrap().torque, "current");
     let optional = LoggedOptions { torque: false, ..options };
     assert!(read(&format!("t,{}{rows}", names("q{}", 1).join(",")), &optional).is_ok());
 }
@@ -270,9 +269,9 @@ fn wrong_cells_and_times_are_named_with_line_and_column() {
         ("t,pos1,tau1\n\n0,1,on\n", "log.csv:3: column \"tau1\" is \"on\""),
         ("t,pos1,tau1\n0,,1\n", "log.csv:2: column \"pos1\" is empty"),
         ("t,pos1,tau1\n0,1,1\n1,1\n", "log.csv:3: the line has 2 fields, but the header has 3"),
-        ("t,pos1,tau1\n1,1,1\n1,1,1\n", "log.csv:3: t = 1 is the time of the sample above"),
-        ("t,pos1,tau1\n1,1,1\n0.5,1,1\n", "log.csv:3: t = 0.5 is earlier than the sample above"),
-        ("t,pos1,tau1\n12:30,1,1\n", "log.csv:2: the time t is \"12:30\", not a number"),
+        ("t,pos1,tau1\n1,1,1\n1,1,1\n", "log.csv:3: t = 1 is the time of the line above"),
+        ("t,pos1,tau1\n1,1,1\n0.5,1,1\n", "log.csv:3: t = 0.5 is earlier than the line above"),
+        ("t,pos1,tau1\n12:30,1,1\n", "log.csv:2: column \"t\" is \"12:30\", not a finite number"),
     ];
     for (text, words) in cases {
         let said = read(text, &options).unwrap_err();
@@ -283,15 +282,17 @@ fn wrong_cells_and_times_are_named_with_line_and_column() {
 
 #[test]
 fn the_format_of_recordings_is_no_log() {
-    let (_folder, path) = written("t,q1,qd1,tau1,temp1\n0,0,0,0,20\n");
-    assert!(is_recording(&path, &ColumnSettings::default()));
-    for key in
-        ["angle=deg", "time_unit=s", "tau=taum{}", "q=p{}", "qd=v{}", "time=clock", "first=1"]
-    {
-        assert!(!is_recording(&path, &key.parse().unwrap()), "{key} would be ignored");
+    let is_recording = |header: &str, columns: &str| {
+        let columns = columns.parse().unwrap();
+        let read = read(&format!("{header}\n0,0,0,0,20,3\n"), &options(None, &columns));
+        read.is_ok_and(|logged| logged.understood.is_none())
+    };
+    let header = "t,q1,qd1,tau1,temp1,taum1";
+    assert!(is_recording(header, ""));
+    for key in ["angle=deg", "time_unit=s", "tau=taum{}", "q=q{}", "qd=qd{}", "time=t", "first=1"] {
+        assert!(!is_recording(header, key), "{key} would be ignored");
     }
-    let (_folder, path) = written("t,q1,dq1,tau1\n0,0,0,0\n");
-    assert!(!is_recording(&path, &ColumnSettings::default()));
+    assert!(!is_recording("t,q1,dq1,tau1,temp1,taum1", ""));
 }
 
 #[test]

@@ -1,67 +1,23 @@
-//! Lines, fields and numbers of CSV text, without copies.
+//! Numbers of CSV text, without copies.
 
 /// Largest power of ten that is a double without rounding.
-pub(crate) const EXACT_POWERS: [f64; 23] = [
+pub(super) const EXACT_POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
 /// Whole numbers below this are doubles without rounding.
-pub(crate) const EXACT_WHOLE: u64 = 1 << 53;
+pub(super) const EXACT_WHOLE: u64 = 1 << 53;
 
 /// Digits that a `u64` holds in any case.
 const MOST_DIGITS: usize = 19;
-
-/// Returns whether text can be divided at line ends and commas alone: it has no quotes, and a
-/// carriage return only before a line feed.
-pub(crate) fn is_plain(bytes: &[u8]) -> bool {
-    let is_lone = |at: usize| bytes.get(at + 1) != Some(&b'\n');
-    !bytes.contains(&b'"')
-        && (!bytes.contains(&b'\r')
-            || !bytes.iter().enumerate().any(|(at, byte)| *byte == b'\r' && is_lone(at)))
-}
-
-/// Returns the number of bytes before the end of the line at the start of some text.
-pub(crate) fn end_of_line(text: &[u8]) -> usize {
-    text.iter().position(|byte| *byte == b'\n').unwrap_or(text.len())
-}
-
-/// The header of plain text, and where it ends.
-#[derive(Debug, PartialEq)]
-pub(crate) struct PlainHeader<'a> {
-    /// The fields; none if there is no header.
-    pub fields: Vec<&'a [u8]>,
-    /// Where the next line starts.
-    pub end: usize,
-    /// Number of lines before.
-    pub lines: u64,
-}
-
-/// Reads the header after any empty lines; `None` if it is not plain.
-pub(crate) fn plain_header(bytes: &[u8]) -> Option<PlainHeader<'_>> {
-    let (mut end, mut lines) = (0, 0);
-    while end < bytes.len() {
-        let rest = &bytes[end..];
-        let text = &rest[..end_of_line(rest)];
-        (end, lines) = (end + text.len() + 1, lines + 1);
-        let text = text.strip_suffix(b"\r").unwrap_or(text);
-        if text.iter().any(|byte| matches!(byte, b'"' | b'\r')) {
-            return None;
-        }
-        if !text.is_empty() {
-            let fields = text.split(|byte| *byte == b',').map(<[u8]>::trim_ascii).collect();
-            return Some(PlainHeader { fields, end, lines });
-        }
-    }
-    Some(PlainHeader { fields: vec![], end, lines })
-}
 
 /// Returns the finite number that a field holds; `None` for any other text.
 ///
 /// A number of few digits is the quotient of two whole numbers that are doubles, hence exact to
 /// rounding (Clinger, "How to read floating point numbers accurately", 1990). Any other is read by
 /// the standard library.
-pub(crate) fn number(field: &[u8]) -> Option<f64> {
+pub(super) fn number(field: &[u8]) -> Option<f64> {
     few_digits(field).or_else(|| {
         let number = std::str::from_utf8(field).ok()?.parse::<f64>().ok()?;
         number.is_finite().then_some(number)
@@ -99,7 +55,7 @@ fn few_digits(field: &[u8]) -> Option<f64> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{PlainHeader, is_plain, number, plain_header};
+    use super::number;
 
     fn standard(text: &str) -> Option<u64> {
         text.parse::<f64>().ok().filter(|number| number.is_finite()).map(f64::to_bits)
@@ -130,17 +86,5 @@ mod tests {
         }
         assert_eq!(number(b"-0").map(f64::to_bits), Some((-0.0f64).to_bits()));
         assert_eq!((number(b".5"), number(b"5.")), (Some(0.5), Some(5.0)));
-    }
-
-    #[test]
-    fn rows_start_after_empty_lines_and_a_plain_header() {
-        let fields = vec![&b"t"[..], b"q1"];
-        let expected = |end, lines| Some(PlainHeader { fields: fields.clone(), end, lines });
-        assert_eq!(plain_header(b"\r\n\nt,q1\r\n\n1,2\n"), expected(9, 3));
-        assert_eq!(plain_header(b"t , q1"), expected(7, 1));
-        assert_eq!([plain_header(b"\"t\",q1\n1"), plain_header(b"t\rq1\n")], [None, None]);
-        assert_eq!(plain_header(b"\n"), Some(PlainHeader { fields: vec![], end: 1, lines: 1 }));
-        assert!(is_plain(b"a\r\nb") && !is_plain(b"a\rb") && !is_plain(b"a\r"));
-        assert!(!is_plain(b"\"a\",b"));
     }
 }

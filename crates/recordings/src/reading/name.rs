@@ -215,7 +215,7 @@ fn time_unit(words: &[String]) -> Option<TimeUnit> {
 #[cfg(test)]
 mod tests {
     use super::{ColumnName, Origin, Quantity};
-    use crate::logged::unit::{AngleUnit, TimeUnit};
+    use crate::reading::unit::{AngleUnit, TimeUnit};
 
     #[test]
     fn names_of_many_drivers_are_taken_apart() {

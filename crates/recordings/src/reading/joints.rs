@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::name::{ColumnName, words};
+use super::options::LoggedOptions;
 
 /// A column of a file of a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +42,17 @@ pub(super) enum Mismatch {
 pub(super) type Matched = (Vec<Column>, Vec<Column>);
 
 impl Joints {
+    /// Returns the joints of the robot, if one is given.
+    pub(super) fn of_robot(options: &LoggedOptions) -> Option<Self> {
+        let joints = options.robot?.joints();
+        let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
+        let place = |(at, name): (usize, &String)| {
+            options.joints.iter().position(|other| other == name).unwrap_or(at)
+        };
+        let places = names.iter().enumerate().map(place).collect();
+        Some(Self { names, places, first: options.columns.first })
+    }
+
     /// Returns one of the columns for each joint: by the joints' names, or else by numbers.
     pub(super) fn matched(&self, columns: &[Column]) -> Result<Matched, Mismatch> {
         let named = self.by_name(columns);
@@ -111,6 +123,21 @@ impl Joints {
         let others = others.collect();
         Ok(Some((chosen, others)))
     }
+}
+
+/// Returns the columns whose names are `pattern` with a number in place of `{}`, in the order of
+/// the numbers, which follow one another from `first` on, or from 0 or 1. A pattern without `{}` is
+/// the name of one column.
+pub(super) fn by_pattern(columns: &[Column], pattern: &str, first: Option<usize>) -> Vec<Column> {
+    let Some((before, after)) = pattern.split_once("{}") else {
+        return columns.iter().filter(|column| column.text == pattern).cloned().collect();
+    };
+    let number = |column: &Column| -> Option<usize> {
+        column.text.strip_prefix(before)?.strip_suffix(after)?.parse().ok()
+    };
+    let column = |wanted: usize| columns.iter().find(|column| number(column) == Some(wanted));
+    let first = first.unwrap_or_else(|| usize::from(column(0).is_none()));
+    (first..).map_while(column).cloned().collect()
 }
 
 /// Returns the words of a joint's name without "joint", which logs often omit. The result is empty
@@ -198,5 +225,18 @@ mod tests {
     fn names_are_listed_in_few_words() {
         assert_eq!(listed(["q_0", "q_1", "q_2", "mode"]), "q_0 to q_2, mode");
         assert_eq!(listed(["a", "b"]), "a, b");
+    }
+
+    #[test]
+    fn numbers_stand_in_place_of_the_braces() {
+        let names = ["m2_pos", "m1_pos", "m3_pos", "m5_pos", "other"];
+        let columns = columns(&names);
+        let found = |pattern, first| -> Vec<usize> {
+            by_pattern(&columns, pattern, first).iter().map(|column| column.at).collect()
+        };
+        assert_eq!(found("m{}_pos", None), [1, 0, 2]);
+        assert_eq!(found("m{}_pos", Some(5)), [3]);
+        assert_eq!(found("m{}_pos", Some(0)), [0; 0]);
+        assert_eq!(found("other", None), [4]);
     }
 }

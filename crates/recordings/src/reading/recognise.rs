@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::unit::{AngleUnit, TimeUnit};
-use crate::wraps::is_wrap;
+use crate::unwrap::is_wrap;
 
 /// Relative deviation up to which a ratio shows its units; the nearest two are a factor of 3 apart.
 const TOLERANCE: f64 = 0.3;

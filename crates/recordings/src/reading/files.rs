@@ -5,24 +5,12 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::assignment::quantity_of_file;
+use super::canonical::is_recording;
 use super::dialect::Dialect;
 use super::name::{ColumnName, Quantity};
-use super::settings::ColumnSettings;
-use crate::header::is_strict_header;
 
 /// Bytes in which a header ends.
 const HEADER_BYTES: u64 = 1 << 16;
-
-/// Returns whether a file is a recording in the format of `docs/recordings.md`, with the header
-/// `t,q1..qn,qd1..qdn,tau1..taun`, and `columns` give nothing. Other files are logs, which
-/// [`read_logged`](super::read_logged) reads as `columns` say. A file that cannot be read is taken
-/// for a recording, whose reader says why.
-#[must_use]
-pub fn is_recording(file: &Path, columns: &ColumnSettings) -> bool {
-    let is_given = *columns != ColumnSettings::default();
-    // Reading a pipe would empty it.
-    !file.is_file() || (!is_given && head(file).is_none_or(|bytes| is_strict_header(&bytes)))
-}
 
 fn head(file: &Path) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
@@ -100,11 +88,10 @@ pub fn group_files(files: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
 /// Returns the one quantity of a file, and the rest of its name; `None` for a file with several.
 fn only_quantity(file: &Path) -> Option<(Quantity, Vec<String>)> {
     let quantity = quantity_of_file(file)?;
-    let bytes = head(file)?;
-    if is_strict_header(&bytes) {
+    let dialect = Dialect::of(file, &head(file)?).ok()?;
+    if is_recording(&dialect) {
         return None;
     }
-    let dialect = Dialect::of(file, &bytes).ok()?;
     let is_other = |name: &String| {
         let other = ColumnName::new(name).quantity;
         other.is_some_and(|q| q != quantity && !matches!(q, Quantity::Time | Quantity::Other))

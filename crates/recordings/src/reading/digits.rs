@@ -1,13 +1,13 @@
 //! Numbers at the start of CSV text, eight digits at a time.
 
-use crate::lines::{EXACT_POWERS, EXACT_WHOLE};
+use super::number::{EXACT_POWERS, EXACT_WHOLE};
 
 /// Digits that are read at once.
 const AT_ONCE: usize = 8;
 
 /// A decimal number without an exponent at the start of a text.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Decimal {
+pub(super) struct Decimal {
     /// All digits, as one whole number.
     whole: u64,
     /// Number of digits after the point.
@@ -21,7 +21,7 @@ impl Decimal {
     /// Reads the number at the start of `text`; `None` if there is none, if its digits do not fit a
     /// double without rounding, or if fewer than eight bytes follow its sign or its point.
     #[inline]
-    pub(crate) fn leading(text: &[u8]) -> Option<Self> {
+    pub(super) fn leading(text: &[u8]) -> Option<Self> {
         // Branches that mostly go one way let the processor look ahead.
         let (is_negative, start) = match text.first()? {
             b'-' => (true, 1),
@@ -55,14 +55,14 @@ impl Decimal {
     /// Returns the number, correctly rounded: the quotient of two whole numbers that are doubles
     /// (Clinger, "How to read floating point numbers accurately", 1990).
     #[inline]
-    pub(crate) fn value(&self) -> f64 {
+    pub(super) fn value(&self) -> f64 {
         let size = self.whole as f64 / EXACT_POWERS[self.fraction];
         if self.is_negative { -size } else { size }
     }
 
     /// Returns a number of seconds in picoseconds; `None` if it is not a whole number of them.
     #[inline]
-    pub(crate) fn picoseconds(&self) -> Option<i128> {
+    pub(super) fn picoseconds(&self) -> Option<i128> {
         let shift = POWERS_OF_SECONDS.get(self.fraction)?;
         let size = i128::from(self.whole) * i128::from(*shift);
         Some(if self.is_negative { -size } else { size })

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use crate::run::Run;
+
 /// Relative deviation of a jump from whole turns.
 const TOLERANCE: f64 = 0.1;
 
@@ -23,7 +25,7 @@ pub(crate) fn is_wrap(q: &[f64], k: usize, turn: f64) -> bool {
 }
 
 /// Returns the samples to which the positions of a joint, rad, jump by whole turns.
-pub(crate) fn jumps(q: &[f64]) -> Vec<usize> {
+fn jumps(q: &[f64]) -> Vec<usize> {
     let turn = 2.0 * PI;
     // A joint near half a turn may jump to and fro with the noise of its sensor, so the steps about
     // a jump count without their turns.
@@ -39,9 +41,22 @@ pub(crate) fn jumps(q: &[f64]) -> Vec<usize> {
     (0..steps.len()).filter(|at| is_jump(*at)).map(|at| at + 1).collect()
 }
 
-/// Takes jumps by whole turns out of the positions of a joint, rad, and returns the samples to
-/// which it jumped.
-pub(crate) fn unwrap(q: &mut [f64]) -> Vec<usize> {
+/// Takes jumps by whole turns out of the positions of a revolute joint (from 0), as where a log
+/// counts turns from sensor to sensor. Returns the samples to which it jumped.
+pub(crate) fn take_out_turns(run: &mut Run, joint: usize) -> Vec<usize> {
+    let q = |k: usize| run.q(k)[joint];
+    if (1..run.len()).all(|k| (q(k) - q(k - 1)).abs() <= PI) {
+        return vec![];
+    }
+    let mut positions: Vec<f64> = (0..run.len()).map(q).collect();
+    let jumps = unwrap(&mut positions);
+    let rows = run.states.chunks_exact_mut(2 * run.joints).zip(positions);
+    rows.for_each(|(row, position)| row[joint] = position);
+    jumps
+}
+
+/// Takes the jumps out of positions, rad, and returns the samples to which they jumped.
+fn unwrap(q: &mut [f64]) -> Vec<usize> {
     let turn = 2.0 * PI;
     let jumps = jumps(q);
     let mut shifts = Vec::with_capacity(jumps.len());

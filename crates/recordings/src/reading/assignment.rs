@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use super::dialect::Dialect;
-use super::joints::{Column, Joints, Mismatch, listed};
+use super::joints::{Column, Joints, Mismatch, by_pattern, listed};
 use super::name::{ColumnName, Origin, Quantity};
 use super::options::LoggedOptions;
-use super::pattern::by_pattern;
 use super::time_column::{TimeColumns, time_columns};
 use crate::defect::{Defect, DefectKind};
 
@@ -33,6 +32,19 @@ pub(super) struct Assignment {
     pub joints: Vec<String>,
     pub notes: Vec<String>,
     pub unused: Vec<String>,
+}
+
+impl Assignment {
+    /// Returns the columns of each quantity beside the time.
+    pub(super) fn lists(&self) -> [(Quantity, &[Column]); 4] {
+        let tau = self.tau.as_ref().map(|(columns, _)| &columns[..]);
+        [
+            (Quantity::Position, &self.q),
+            (Quantity::Velocity, self.qd.as_deref().unwrap_or_default()),
+            (Quantity::Torque, tau.unwrap_or_default()),
+            (Quantity::Temperature, self.temperatures.as_deref().unwrap_or_default()),
+        ]
+    }
 }
 
 /// Finds the columns by their names.
@@ -167,14 +179,8 @@ impl Finder<'_> {
     /// Returns the robot's joints; without a robot, the joints that the positions name.
     fn joints(&self) -> Found<Joints> {
         let first = self.options.columns.first;
-        if let Some(robot) = self.options.robot {
-            let names: Vec<String> =
-                robot.joints().iter().map(|joint| joint.name.clone()).collect();
-            let place = |(at, name): (usize, &String)| {
-                self.options.joints.iter().position(|other| other == name).unwrap_or(at)
-            };
-            let places = names.iter().enumerate().map(place).collect();
-            return Ok(Joints { names, places, first });
+        if let Some(joints) = Joints::of_robot(self.options) {
+            return Ok(joints);
         }
         let none = Joints { first, ..Joints::default() };
         let given = self.given(Quantity::Position, &none)?;
@@ -309,14 +315,8 @@ impl Finder<'_> {
 
     /// Returns the names of the columns that are not used.
     fn unused(&self, assignment: &Assignment) -> Vec<String> {
-        let lists = [
-            Some(&assignment.q),
-            assignment.qd.as_ref(),
-            assignment.tau.as_ref().map(|(columns, _)| columns),
-            assignment.temperatures.as_ref(),
-        ];
         let used = |column: &Column| {
-            lists.iter().flatten().any(|list| list.contains(column))
+            assignment.lists().iter().any(|(_, list)| list.contains(column))
                 || assignment.time[column.file].contains(column.at)
         };
         self.columns.iter().filter(|c| !used(c)).map(|c| c.text.clone()).collect()

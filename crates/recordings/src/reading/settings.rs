@@ -96,7 +96,7 @@ impl FromStr for ColumnSettings {
 #[cfg(test)]
 mod tests {
     use super::ColumnSettings;
-    use crate::logged::unit::{AngleUnit, TimeUnit};
+    use crate::reading::unit::{AngleUnit, TimeUnit};
 
     #[test]
     fn text_and_table_mean_the_same() {

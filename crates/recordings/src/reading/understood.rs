@@ -4,7 +4,6 @@ use serde::Serialize;
 
 use super::assignment::{Assignment, TorqueKind};
 use super::dialect::Dialect;
-use super::joints::Column;
 use super::recognise::Units;
 use crate::run::Run;
 
@@ -44,39 +43,38 @@ pub struct Understood {
 }
 
 impl Understood {
-    pub(super) fn of(units: Units) -> Self {
-        Self {
-            time_unit: units.time.name(),
-            angle_units: [units.q.name(), units.qd.name()],
-            ratio: units.ratio,
-            ..Self::default()
-        }
-    }
-
-    pub(super) fn set(
-        &mut self,
+    pub(super) fn new(
         files: &[PathBuf],
         dialect: &Dialect,
         assignment: &Assignment,
+        units: Units,
         run: &Run,
-    ) {
-        let names = |columns: &[Column]| columns.iter().map(|c| c.text.clone()).collect();
-        self.files = files.iter().map(|file| file.display().to_string()).collect();
-        self.separator = dialect.separator_name();
-        (self.samples, self.duration) = (run.len(), run.duration());
-        self.joints.clone_from(&assignment.joints);
-        self.time.clone_from(&assignment.time[0].name);
-        self.q = names(&assignment.q);
-        self.qd = assignment.qd.as_deref().map_or_else(Vec::new, names);
-        self.tau = assignment.tau.as_ref().map_or_else(Vec::new, |(columns, _)| names(columns));
-        self.torque = match assignment.tau {
-            None => "none",
-            Some((_, TorqueKind::Measured)) => "measured",
-            Some((_, TorqueKind::Demanded)) => "demanded",
-            Some((_, TorqueKind::Current)) => "current",
-        };
-        self.temperature = assignment.temperatures.as_deref().map_or_else(Vec::new, names);
-        self.unused.clone_from(&assignment.unused);
+    ) -> Self {
+        let [q, qd, tau, temperature] = assignment
+            .lists()
+            .map(|(_, columns)| columns.iter().map(|column| column.text.clone()).collect());
+        Self {
+            files: files.iter().map(|file| file.display().to_string()).collect(),
+            separator: dialect.separator_name(),
+            samples: run.len(),
+            duration: run.duration(),
+            joints: assignment.joints.clone(),
+            time: assignment.time[0].name.clone(),
+            q,
+            qd,
+            tau,
+            torque: match assignment.tau {
+                None => "none",
+                Some((_, TorqueKind::Measured)) => "measured",
+                Some((_, TorqueKind::Demanded)) => "demanded",
+                Some((_, TorqueKind::Current)) => "current",
+            },
+            temperature,
+            unused: assignment.unused.clone(),
+            time_unit: units.time.name(),
+            angle_units: [units.q.name(), units.qd.name()],
+            ratio: units.ratio,
+        }
     }
 }
 

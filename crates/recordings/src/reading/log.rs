@@ -1,0 +1,358 @@
+//! One recording of a log: its files, read, joined and brought to the units of reachtube.
+
+use std::path::PathBuf;
+
+use reachtube_files::hex;
+use reachtube_robot::{JointKind, Robot};
+use sha2::{Digest, Sha256};
+
+use super::assignment::{Assignment, TorqueKind, assign};
+use super::canonical::{content, is_recording, recording};
+use super::dialect::Dialect;
+use super::joints::{Column, Joints, listed};
+use super::name::Quantity;
+use super::options::LoggedOptions;
+use super::recognise::{Numbers, Units, recognise};
+use super::settings::ColumnSettings;
+use super::table::{ReadColumn, Table};
+use super::understood::Understood;
+use crate::defect::{Defect, DefectKind};
+use crate::run::Run;
+use crate::source::ReadOptions;
+use crate::text::quoted;
+use crate::unwrap::take_out_turns;
+
+/// A joint that leaves its first position by more than this moves, rad or m.
+const MOVES: f64 = 0.05;
+
+/// No quantity of a joint is beyond this in any unit.
+const LARGEST: f64 = 1e9;
+
+/// A recording of a log, and what was understood of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Logged {
+    /// The recording, with columns in the order of the robot's joints. Motor currents stand in
+    /// place of its torques where gains were announced. Torques are 0 where a log has none, which
+    /// only [`LoggedOptions::torque`] = `false` accepts.
+    pub run: Run,
+    /// What was understood of columns and units; `None` for a file in the format of
+    /// `docs/recordings.md`.
+    pub understood: Option<Understood>,
+    /// Notes for the user, each with the name of the file.
+    pub notes: Vec<String>,
+}
+
+/// Reads a recording from the files of a log: one with all quantities, or one for each quantity
+/// with the same times.
+///
+/// A file with the header `t,q1..qn,qd1..qdn,tau1..taun` is read as it is, unless
+/// [`LoggedOptions::columns`] say otherwise. In others, columns and units are recognised.
+///
+/// # Errors
+///
+/// Every defect, with file, line, column and remedy.
+///
+/// # Panics
+///
+/// Panics without a file.
+///
+/// # Examples
+///
+/// ```
+/// use reachtube_recordings::{ColumnSettings, GapLimit, LoggedOptions, read_logged};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("log.csv");
+/// let rows = "0 0.10 1.0 2.0\n4 0.104 1.0 2.0\n8 0.108 1.0 2.0\n";
+/// std::fs::write(&path, format!("time_ms actual_q_0 actual_qd_0 target_moment_0\n{rows}"))?;
+///
+/// let columns = ColumnSettings::default();
+/// let options = LoggedOptions {
+///     robot: None,
+///     joints: &[],
+///     columns: &columns,
+///     gains: false,
+///     torque: true,
+///     gap_limit: GapLimit::Usual,
+///     until: None,
+/// };
+/// let logged = read_logged(&[path], &options).unwrap();
+/// assert_eq!(logged.run.times, [0.0, 0.004, 0.008]);
+/// # Ok::<(), std::io::Error>(())
+/// ```
+pub fn read_logged(files: &[PathBuf], options: &LoggedOptions) -> Result<Logged, Vec<Defect>> {
+    let contents: Vec<Vec<u8>> =
+        files.iter().map(|file| content(file)).collect::<Result<_, _>>()?;
+    let dialect = |(file, bytes): (&PathBuf, &Vec<u8>)| Dialect::of(file, bytes);
+    let dialects: Vec<Dialect> = files
+        .iter()
+        .zip(&contents)
+        .map(dialect)
+        .collect::<Result<_, _>>()
+        .map_err(|defect| vec![*defect])?;
+    let mut logged = match &dialects[..] {
+        [only] if *options.columns == ColumnSettings::default() && is_recording(only) => {
+            as_it_is(files, &contents[0], only, options)?
+        }
+        _ => {
+            let assignment = assign(files, &dialects, options)?;
+            let log = Log { files, dialects: &dialects, assignment: &assignment, options };
+            log.logged(&contents)?
+        }
+    };
+    let mut digest = Sha256::new();
+    contents.iter().for_each(|bytes| digest.update(bytes));
+    logged.run.sha256 = hex(&digest.finalize());
+    logged.run.truncate(options.until);
+    Ok(logged)
+}
+
+/// Reads a file in the format of recordings, and takes whole turns out.
+fn as_it_is(
+    files: &[PathBuf],
+    content: &[u8],
+    dialect: &Dialect,
+    options: &LoggedOptions,
+) -> Result<Logged, Vec<Defect>> {
+    let joints = options.robot.map(Robot::joint_count);
+    let read = ReadOptions { joints, gap_limit: options.gap_limit, until: None };
+    let of_robot = Joints::of_robot(options).unwrap_or_default();
+    let (mut run, table) = recording(&files[0], content, dialect, &of_robot.places, &read)?;
+    let names = match options.robot {
+        Some(_) => of_robot.names,
+        None => (1..=run.joints).map(|joint| format!("joint {joint}")).collect(),
+    };
+    let notes = turn_notes(&mut run, files, &table, &names, options);
+    Ok(Logged { run, understood: None, notes })
+}
+
+/// Takes whole turns out of the positions of revolute joints, and returns a note for each.
+fn turn_notes(
+    run: &mut Run,
+    files: &[PathBuf],
+    table: &Table,
+    joints: &[String],
+    options: &LoggedOptions,
+) -> Vec<String> {
+    let kinds = kinds(options, run.joints);
+    let note = |joint: usize| {
+        let jumps = take_out_turns(run, joint);
+        let first = *jumps.first()?;
+        Some(format!(
+            "{}:{}: {} jumps by whole turns at {:.3} s{}; the turns were taken out",
+            files[0].display(),
+            table.line(first)?,
+            joints[joint],
+            run.times[first],
+            match jumps.len() - 1 {
+                0 => String::new(),
+                more => format!(" and {more} times more"),
+            }
+        ))
+    };
+    let revolute = (0..kinds.len()).filter(|joint| kinds[*joint] == JointKind::Revolute);
+    revolute.filter_map(note).collect()
+}
+
+fn kinds(options: &LoggedOptions, joints: usize) -> Vec<JointKind> {
+    options.robot.map_or(vec![JointKind::Revolute; joints], Robot::kinds)
+}
+
+/// A log whose columns are known.
+struct Log<'a> {
+    files: &'a [PathBuf],
+    dialects: &'a [Dialect],
+    assignment: &'a Assignment,
+    options: &'a LoggedOptions<'a>,
+}
+
+impl Log<'_> {
+    /// Reads the numbers, brings them to s, rad and rad/s, and says what was done.
+    fn logged(&self, contents: &[Vec<u8>]) -> Result<Logged, Vec<Defect>> {
+        let Self { files, assignment, options, .. } = *self;
+        let tables = self.tables(contents)?;
+        let values = |column: &Column| tables[column.file].values(&[column.at]);
+        let columns = |list: &Vec<Column>| list.iter().map(values).collect::<Vec<_>>();
+        let mut q = columns(&assignment.q);
+        let mut qd = assignment.qd.as_ref().map(columns);
+        let tau = assignment.tau.as_ref().map(|(list, _)| columns(list));
+        let n = q.len();
+        let kinds = kinds(options, n);
+        let units = self.units(&kinds, &tables[0], &q, qd.as_deref());
+        let units = units.map_err(|[problem, remedy]| {
+            vec![Defect::new(&files[0], None, problem, remedy).of_kind(DefectKind::Units)]
+        })?;
+        for joint in (0..n).filter(|joint| kinds[*joint] == JointKind::Revolute) {
+            scale(&mut q[joint], units.q.per_radian());
+            qd.iter_mut().for_each(|qd| scale(&mut qd[joint], units.qd.per_radian()));
+        }
+        let per_second = units.time.per_second();
+        let gaps = tables[0].gaps(&files[0], per_second, options.gap_limit);
+        if !gaps.is_empty() {
+            return Err(gaps);
+        }
+        let times = tables[0].seconds(per_second);
+        let rows = |columns: &[&[Vec<f64>]]| -> Vec<f64> {
+            let row = |k: usize| columns.iter().copied().flatten().map(move |column| column[k]);
+            (0..times.len()).flat_map(row).collect()
+        };
+        let still = vec![vec![0.0; times.len()]; n];
+        let first = tables[0].time(0).unwrap_or_default() as f64;
+        let mut run = Run {
+            joints: n,
+            start: first / 1e12 / per_second as f64,
+            states: rows(&[&q, qd.as_ref().unwrap_or(&still)]),
+            torques: rows(&[tau.as_ref().unwrap_or(&still)]),
+            temperatures: rows(&[&assignment.temperatures.as_ref().map_or(vec![], columns)]),
+            times,
+            sha256: String::new(),
+        };
+        let name = files[0].display();
+        let named = |note: String| format!("{name}: {note}");
+        let mut notes: Vec<String> = assignment.notes.iter().cloned().map(named).collect();
+        notes.extend(units.notes(qd.is_some()).map(named));
+        notes.extend(turn_notes(&mut run, files, &tables[0], &assignment.joints, options));
+        if qd.is_none() {
+            differentiate(&mut run);
+        }
+        let dead = tau.is_some().then(|| dead_torques(&run, &assignment.joints)).flatten();
+        notes.extend(torque_note(assignment).into_iter().chain(dead).map(named));
+        let understood = Understood::new(files, &self.dialects[0], assignment, units, &run);
+        Ok(Logged { run, understood: Some(understood), notes })
+    }
+
+    /// Reads the numbers of each file, which have the same times.
+    fn tables(&self, contents: &[Vec<u8>]) -> Result<Vec<Table>, Vec<Defect>> {
+        let lists = self.assignment.lists();
+        let mut tables: Vec<Table> = Vec::new();
+        for (file, dialect) in self.dialects.iter().enumerate() {
+            let time = &self.assignment.time[file];
+            let column = |at: usize, quantity| ReadColumn {
+                at,
+                name: format!("column {}", quoted(&dialect.names[at])).into(),
+                joint: None,
+                quantity,
+                limits: (quantity != Quantity::Time).then_some([-LARGEST, LARGEST]),
+            };
+            let times = std::iter::once(time.at).chain(time.nanoseconds);
+            let mut columns: Vec<_> = times.map(|at| column(at, Quantity::Time)).collect();
+            for (quantity, list) in &lists {
+                let of_file = list.iter().filter(|column| column.file == file);
+                columns.extend(of_file.map(|of| column(of.at, *quantity)));
+            }
+            let path = &self.files[file];
+            let (table, defects) = Table::read(path, &contents[file], dialect, time, columns);
+            if !defects.is_empty() {
+                return Err(defects);
+            }
+            tables.push(table);
+        }
+        check_times(self.files, &tables).map_err(|defect| vec![*defect])?;
+        Ok(tables)
+    }
+
+    fn units(
+        &self,
+        kinds: &[JointKind],
+        table: &Table,
+        q: &[Vec<f64>],
+        qd: Option<&[Vec<f64>]>,
+    ) -> Result<Units, [String; 2]> {
+        let revolute: Vec<bool> = kinds.iter().map(|kind| *kind == JointKind::Revolute).collect();
+        let furthest = |[low, high]: [f64; 2]| low.abs().max(high.abs());
+        let (mut limits, mut speeds) = (vec![None; kinds.len()], vec![None; kinds.len()]);
+        if let Some(robot) = self.options.robot {
+            let joints = robot.description().joints.iter();
+            limits = joints.map(|joint| joint.position_limits.map(furthest)).collect();
+            speeds = robot.joints().iter().map(|joint| joint.velocity_limit).collect();
+        }
+        let numbers = Numbers {
+            times: &table.seconds(1),
+            first: table.time(0).unwrap_or_default() as f64 / 1e12,
+            q,
+            qd,
+            revolute: &revolute,
+            limits: &limits,
+            speeds: &speeds,
+        };
+        let columns = self.assignment.q.iter().chain(self.assignment.qd.iter().flatten());
+        let named = columns.filter_map(|column| column.name.angle).next();
+        recognise(&numbers, self.assignment.time[0].unit, self.options.columns.angle.or(named))
+    }
+}
+
+/// Checks that the files of one recording have the same times.
+fn check_times(files: &[PathBuf], tables: &[Table]) -> Result<(), Box<Defect>> {
+    let (first, of) = (&tables[0], files[0].display());
+    for (file, other) in files.iter().zip(tables).skip(1) {
+        let counts = [other.len(), first.len()];
+        let rows = 0..counts[0].max(counts[1]);
+        let Some(k) = rows.into_iter().find(|k| first.time(*k) != other.time(*k)) else { continue };
+        let problem = match k < counts[0].min(counts[1]) {
+            true => format!("sample {} is at another time than in {of}", k + 1),
+            false => format!("there are {} samples, but {} in {of}", counts[0], counts[1]),
+        };
+        let remedy = "the files of one recording need the same times: export them together, or \
+                      give a file with all quantities";
+        let defect = Defect::new(file, other.line(k), problem, remedy);
+        return Err(Box::new(defect.of_kind(DefectKind::Time)));
+    }
+    Ok(())
+}
+
+/// Names the joints that move while their torque stays the same.
+fn dead_torques(run: &Run, joints: &[String]) -> Option<String> {
+    let samples = || 1..run.len();
+    let moves =
+        |joint: &usize| samples().any(|k| (run.q(k)[*joint] - run.q(0)[*joint]).abs() > MOVES);
+    let is_dead = |joint: &usize| samples().all(|k| run.torque(k)[*joint] == run.torque(0)[*joint]);
+    let dead: Vec<usize> = (0..run.joints).filter(moves).filter(is_dead).collect();
+    let names: Vec<&str> = dead.iter().map(|i| joints[*i].as_str()).collect();
+    Some(format!(
+        "the torque of {} is {} in every sample, although the joint moves: it was not measured, \
+         and no model of it can be identified",
+        names.join(", "),
+        run.torque(0)[*dead.first()?]
+    ))
+}
+
+fn torque_note(assignment: &Assignment) -> Option<String> {
+    let (columns, kind) = assignment.tau.as_ref()?;
+    let names = listed(columns.iter().map(|column| column.text.as_str()));
+    match kind {
+        TorqueKind::Measured => None,
+        TorqueKind::Demanded => Some(format!(
+            "the torques {names} are what the model of the controller demands, not a measurement: \
+             what is identified from them is that model"
+        )),
+        TorqueKind::Current => Some(format!("{names} are motor currents")),
+    }
+}
+
+fn scale(values: &mut [f64], per_unit: f64) {
+    if per_unit != 1.0 {
+        values.iter_mut().for_each(|value| *value /= per_unit);
+    }
+}
+
+/// Makes the velocities the derivatives of the positions at each sample: the slope of the parabola
+/// through three.
+fn differentiate(run: &mut Run) {
+    let (n, last) = (run.joints, run.len() - 1);
+    for joint in 0..n {
+        let q: Vec<f64> = (0..=last).map(|k| run.q(k)[joint]).collect();
+        let times = &run.times;
+        let slope = |a: usize, b: usize| (q[b] - q[a]) / (times[b] - times[a]);
+        for k in 0..=last {
+            run.states[(2 * k + 1) * n + joint] = match k {
+                _ if last == 0 => 0.0,
+                0 => slope(0, 1),
+                k if k == last => slope(k - 1, k),
+                k => {
+                    let (before, after) = (times[k] - times[k - 1], times[k + 1] - times[k]);
+                    (slope(k - 1, k) * after + slope(k, k + 1) * before) / (before + after)
+                }
+            };
+        }
+    }
+}

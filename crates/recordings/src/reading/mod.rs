@@ -1,0 +1,35 @@
+//! The one reader of recordings in text: of the format of `docs/recordings.md`, and as robots and
+//! drivers log them, with columns of any name, order, unit and separator.
+//!
+//! [`Table`](table::Table) reads the numbers of some columns of a file, and finds all defects. The
+//! header `t,q1..qn,qd1..qdn,tau1..taun` is one assignment of columns ([`canonical`]). For others,
+//! [`read_logged`] matches columns with joints by their names, recognises units from the numbers,
+//! and says what it did. What is ambiguous is refused with the setting that decides it.
+
+mod assignment;
+mod canonical;
+mod dialect;
+mod digits;
+mod files;
+mod joints;
+mod log;
+mod log_settings;
+mod name;
+mod number;
+mod options;
+mod recognise;
+mod row;
+mod settings;
+mod table;
+mod time_column;
+mod understood;
+mod unit;
+
+pub use canonical::{parse_csv, read_csv};
+pub use files::{csv_files, group_files};
+pub use log::{Logged, read_logged};
+pub use log_settings::{LogSettings, LogTime};
+pub use options::LoggedOptions;
+pub use settings::ColumnSettings;
+pub use understood::Understood;
+pub use unit::{AngleUnit, TimeUnit};
