@@ -29,6 +29,14 @@ pub enum Error {
         /// The operating system's reason.
         source: std::io::Error,
     },
+    /// A file does not hold the progress of this job.
+    #[error("{}: {problem}; give the file of this job, or a new one", path.display())]
+    Progress {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// A file is where a folder is needed.
     #[error("{}: this is a file, but a folder is needed; give another name", path.display())]
     NotFolder {

@@ -4,6 +4,7 @@
 //! - [`write::try_at`] checks, before a long job, whether its result can be written.
 //! - [`Overwrite`] decides which existing files may be replaced.
 //! - [`json`] reads and writes versioned files.
+//! - [`Journal`] keeps what a long job has finished.
 //! - [`read`] and [`read_text`] read a file with an error that names it, and [`bytes`] without.
 //!
 //! # Examples
@@ -21,6 +22,7 @@
 
 mod digest;
 mod error;
+mod journal;
 pub mod json;
 mod names;
 mod overwrite;
@@ -30,10 +32,8 @@ pub mod write;
 
 pub use digest::hex;
 pub use error::Error;
+pub use journal::Journal;
 pub use names::distinct_names;
-pub use overwrite::{MARK, Overwrite};
+pub use overwrite::{MARK, Overwrite, TOOL};
 pub use printable::printable;
 pub use read::{bytes, read, read_text};
-
-/// Name and version of the program, which every file that it writes records.
-pub const TOOL: &str = concat!("reachtube ", env!("CARGO_PKG_VERSION"));

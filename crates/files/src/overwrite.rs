@@ -7,6 +7,9 @@ use crate::write;
 /// Length of the start of a file in which a mark is looked for, bytes.
 const HEAD: u64 = 4096;
 
+/// Name and version of the program, which every file that it writes records.
+pub const TOOL: &str = concat!("reachtube ", env!("CARGO_PKG_VERSION"));
+
 /// Sentence in the comment that marks text files of reachtube which are not JSON.
 pub const MARK: &str = "Written by reachtube";
 

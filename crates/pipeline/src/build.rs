@@ -19,11 +19,11 @@ use crate::horizon::{
     HorizonWidths, Longest, candidates, longer_horizons, longest, longest_of_all, ratios,
     try_horizons, try_longer,
 };
-use crate::journal::{Journal, digest};
 use crate::motors::unknown_motors;
 use crate::remedies::TooWide;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::{Sorted, WARMTH, unknown_warmth};
+use crate::steps::{Steps, digest};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -79,7 +79,7 @@ pub fn build(
     let settings = PrepareSettings { torque: Some(torque), ..given.prepare_settings() };
     settings.gain_of_each_joint(robot.joint_count())?;
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
-    let journal = Journal::open(journal, digest(robot, torque, given, &sorted.digest));
+    let journal = Steps::open(journal, digest(robot, torque, given, &sorted.digest));
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     refuse_unknown_warmth(given, &split)?;
     chooser.choose_held_out(&split);

@@ -9,16 +9,16 @@ use crate::choices::LARGEST_GROWTH;
 use crate::chooser::Chooser;
 use crate::cut::rounded;
 use crate::error::Result;
-use crate::journal::Journal;
 use crate::mean_position::mean_position;
 use crate::noise::noise;
+use crate::steps::Steps;
 use crate::trial::Trial;
 
 /// Chooses the filter, the model of deviations about the mean of the motion, and what the noise of
 /// the sensors is. Returns them with the cut-off, Hz, for `robot` as described.
 pub(crate) fn first_choices<'a, 'b: 'a>(
     chooser: &mut Chooser<'b>,
-    journal: &'a Journal<'a>,
+    journal: &'a Steps<'a>,
     robot: &Robot,
     torque: Torque,
     raw: &[&RawLog],

@@ -16,8 +16,8 @@ use crate::chooser::Chooser;
 use crate::error::{Error, Result};
 use crate::findings::warning;
 use crate::held_out::Recording;
-use crate::journal::data_digest;
 use crate::kinds::{Kind, motions};
+use crate::steps::data_digest;
 use crate::windows::Origin;
 
 /// What says of recordings how warm the robot was.

@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 
 use crate::error::Result;
 use crate::fold::Fold;
-use crate::journal::Journal;
+use crate::steps::Steps;
 
 /// What a conformance over windows needs besides the windows.
 #[derive(Clone)]
@@ -39,7 +39,7 @@ pub(crate) struct Trial<'a> {
     /// Who may cancel the job.
     pub progress: &'a dyn Progress,
     /// The steps that are finished.
-    pub journal: &'a Journal<'a>,
+    pub journal: &'a Steps<'a>,
 }
 
 /// An observer of a job of many trials, who cancels each of them and counts none. The parts of a

@@ -1,6 +1,7 @@
 //! Uncertainty sets by bisection of one radius after the other (end of Sec. IV-C of the paper), a
 //! baseline.
 
+use reachtube_files::Journal;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::claim::Claim;
@@ -10,7 +11,6 @@ use crate::error::Result;
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::progress::Progress;
 use crate::search::found::{Deciding, Found, SearchSummary};
-use crate::search::journal::Journal;
 use crate::search::prove::encloses;
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::Effort;

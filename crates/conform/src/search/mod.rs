@@ -3,7 +3,6 @@
 
 mod bisection;
 pub(crate) mod found;
-mod journal;
 pub(crate) mod optimality;
 pub(crate) mod prove;
 #[expect(clippy::module_inception, reason = "the folder and its main function share the noun")]

@@ -7,12 +7,13 @@
 //! they settle, and rows outside its computed reachable sets are asked for with a margin
 //! (docs/method.md, correction K).
 
+use reachtube_files::Journal;
+
 use crate::claim::claim::Claim;
 use crate::claim::look::{Look, Near};
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::progress::Progress;
-use crate::search::journal::Journal;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{At, Judged};
 use crate::tube::plant::{Plant, Round};

@@ -1,5 +1,8 @@
 use std::path::Path;
 
+use reachtube_files::{Journal, TOOL, hex};
+use sha2::{Digest, Sha256};
+
 use crate::claim::claim::Claim;
 use crate::claim::look::Look;
 use crate::claim::notion::plant;
@@ -12,7 +15,6 @@ use crate::program::program::{Program, RowIndex, TIGHT};
 use crate::progress::{Progress, Silent};
 use crate::search::bisection::bisect;
 use crate::search::found::{Deciding, Found, SearchSummary, TOUCHING};
-use crate::search::journal::Journal;
 use crate::search::optimality::optimality_gap;
 use crate::search::prove::prove;
 use crate::search::search::{Ended, search};
@@ -32,7 +34,7 @@ pub(crate) fn smallest_sets(
     (progress, resume): (&dyn Progress, Option<&Path>),
 ) -> Result<Found> {
     let plant = &*plant(problem)?;
-    let journal = Journal::new(resume.filter(|_| !plant.is_exact()), problem);
+    let journal = Journal::new(resume.filter(|_| !plant.is_exact()), digest(problem));
     let found = match problem.settings().method {
         Method::Bisection if !plant.is_exact() => bisect(problem, claim, &journal, progress)?,
         _ => {
@@ -49,6 +51,19 @@ pub(crate) fn smallest_sets(
     Ok(found)
 }
 
+/// Returns the digest of everything that decides the sets of a problem.
+fn digest(problem: &Problem) -> String {
+    let mut digest = Sha256::new();
+    let (settings, drive) = (problem.settings(), problem.setup().drive.identity());
+    let decides = serde_json::to_string(&(TOOL, settings, drive));
+    digest.update(decides.expect("settings have only finite numbers and string keys"));
+    digest.update(&problem.recordings().root);
+    for suite in &problem.recordings().suites {
+        digest.update(&suite.entry.name);
+    }
+    hex(&digest.finalize())
+}
+
 /// Finds the smallest sets of a linear model alone.
 ///
 /// # Errors
@@ -56,7 +71,7 @@ pub(crate) fn smallest_sets(
 /// As [`smallest_sets`].
 pub(crate) fn smallest_sets_alone(problem: &Problem, claim: &dyn Claim) -> Result<Found> {
     let plant = &*plant(problem)?;
-    let ended = search((problem, plant), claim, &Journal::new(None, problem), &Silent)?;
+    let ended = search((problem, plant), claim, &Journal::new(None, String::new()), &Silent)?;
     Ok(finish((problem, plant), claim, ended)?.0)
 }
 

@@ -5,48 +5,32 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use reachtube_files::{TOOL, hex, write};
+use reachtube_files::{Journal, hex};
 use reachtube_identify::prepare::RawLog;
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use crate::choices::Choices;
 use crate::error::Result;
 
-/// The name of the file's format.
-const FORMAT: &str = "reachtube-model-progress";
-
 /// The finished steps of a job, and the file that keeps them, if there is one.
-pub(crate) struct Journal<'a> {
-    path: Option<&'a Path>,
-    /// SHA-256 of everything that decides the result.
-    job: String,
-    steps: RefCell<BTreeMap<String, Value>>,
+pub(crate) struct Steps<'a> {
+    /// The file, and whether there is one.
+    journal: (Journal<'a>, bool),
+    found: RefCell<BTreeMap<String, Value>>,
 }
 
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    format: String,
-    tool: String,
-    job: String,
-    steps: BTreeMap<String, Value>,
-}
-
-impl<'a> Journal<'a> {
+impl<'a> Steps<'a> {
     /// Opens the journal of a job. What the file has of another job, or what is no journal, does
     /// not count: it is replaced by the first step.
     pub(crate) fn open(path: Option<&'a Path>, job: String) -> Self {
-        let text = path.and_then(|path| std::fs::read_to_string(path).ok());
-        let file = text.and_then(|text| serde_json::from_str::<File>(&text).ok());
-        let own =
-            file.filter(|file| (&*file.format, &*file.tool, &*file.job) == (FORMAT, TOOL, &job));
-        let steps = RefCell::new(own.map(|file| file.steps).unwrap_or_default());
-        Self { path, job, steps }
+        let journal = Journal::new(path, job);
+        let found = RefCell::new(journal.load().ok().flatten().unwrap_or_default());
+        Self { journal: (journal, path.is_some()), found }
     }
 
     /// Returns what the step `name` found before, or does it and keeps what it finds. The job and
@@ -60,28 +44,17 @@ impl<'a> Journal<'a> {
         name: &str,
         run: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
-        let known = self.steps.borrow().get(name).cloned();
+        let known = self.found.borrow().get(name).cloned();
         if let Some(found) = known.and_then(|value| serde_json::from_value(value).ok()) {
             return Ok(found);
         }
         let found = run()?;
-        if let Some(path) = self.path {
+        if let (journal, true) = &self.journal {
             let value = serde_json::to_value(&found).expect("the keys of a step are strings");
-            self.steps.borrow_mut().insert(name.into(), value);
-            self.save(path)?;
+            self.found.borrow_mut().insert(name.into(), value);
+            journal.save(&*self.found.borrow())?;
         }
         Ok(found)
-    }
-
-    fn save(&self, path: &Path) -> Result<()> {
-        let file = File {
-            format: FORMAT.into(),
-            tool: TOOL.into(),
-            job: self.job.clone(),
-            steps: self.steps.borrow().clone(),
-        };
-        let text = serde_json::to_string(&file).expect("the keys of a journal are strings");
-        Ok(write::atomically(path, |out| out.write_all(text.as_bytes()))?)
     }
 }
 
@@ -128,10 +101,15 @@ mod tests {
 
     impl Progress for StopsAt<'_> {
         fn is_cancelled(&self) -> bool {
-            let text = std::fs::read_to_string(self.journal).unwrap_or_default();
-            let file = serde_json::from_str::<File>(&text);
-            file.is_ok_and(|file| file.steps.len() >= self.steps)
+            steps(self.journal).len() >= self.steps
         }
+    }
+
+    /// Returns the steps in a journal.
+    fn steps(journal: &Path) -> BTreeMap<String, Value> {
+        let text = std::fs::read_to_string(journal).unwrap_or_default();
+        let file = serde_json::from_str::<Value>(&text).unwrap_or_default();
+        serde_json::from_value(file["progress"].clone()).unwrap_or_default()
     }
 
     /// Writes three logs of a pendulum, which has twice the mass of its description, and returns
@@ -169,23 +147,18 @@ mod tests {
         };
         let whole = run(None, &Silent).unwrap().files();
         let path = folder.path().join("progress.json");
-        let steps = |built: &Result<Built>| match built {
-            Err(_) => serde_json::from_slice::<File>(&std::fs::read(&path).unwrap()).unwrap().steps,
-            Ok(_) => BTreeMap::new(),
-        };
         let mut stops = 0;
         loop {
             let built = run(Some(&path), &StopsAt { journal: &path, steps: stops + 1 });
-            let known = steps(&built);
             match built {
                 Ok(built) => {
                     assert_eq!(built.files(), whole);
                     break;
                 }
                 // Each attempt gets one step further.
-                Err(_) => assert!(known.len() > stops, "{:?}", known.keys()),
+                Err(_) => assert!(steps(&path).len() > stops, "{:?}", steps(&path).keys()),
             }
-            stops = known.len();
+            stops = steps(&path).len();
         }
         assert!(stops > 8, "{stops} stops");
     }
@@ -251,21 +224,21 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("progress.json");
         let third = 1.0 / 3.0;
-        let first = Journal::open(Some(&path), "a".into());
+        let first = Steps::open(Some(&path), "a".into());
         assert_eq!(first.step("one", || Ok(vec![Some(third), None])).unwrap()[0], Some(third));
         assert!(first.step::<f64>("two", || Err(Error::NothingLeft)).is_err());
-        let again = Journal::open(Some(&path), "a".into());
+        let again = Steps::open(Some(&path), "a".into());
         let known: Vec<Option<f64>> = again.step("one", || panic!("it is known")).unwrap();
         assert_eq!(known, [Some(third), None]);
         assert_eq!(again.step("two", || Ok(2.0)).unwrap(), 2.0);
-        let other = Journal::open(Some(&path), "b".into());
+        let other = Steps::open(Some(&path), "b".into());
         assert_eq!(other.step("two", || Ok(3.0)).unwrap(), 3.0);
         // Half a file counts as none.
         std::fs::write(&path, "{\"format\": \"reach").unwrap();
-        let damaged = Journal::open(Some(&path), "b".into());
+        let damaged = Steps::open(Some(&path), "b".into());
         assert_eq!(damaged.step("two", || Ok(4.0)).unwrap(), 4.0);
         // Without a file each step is done.
-        let none = Journal::open(None, "a".into());
+        let none = Steps::open(None, "a".into());
         assert_eq!(none.step("one", || Ok(1)).unwrap(), 1);
         assert_eq!(none.step("one", || Ok(2)).unwrap(), 2);
     }
