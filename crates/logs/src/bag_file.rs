@@ -92,7 +92,6 @@ fn open(file: &Path, is_copy: bool, recover: bool) -> rusqlite::Result<Connectio
     Ok(connection)
 }
 
-/// Returns all topics with their numbers.
 fn topics(connection: &Connection) -> rusqlite::Result<Vec<(i64, Topic)>> {
     let mut query = connection
         .prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id")?;

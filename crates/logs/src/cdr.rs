@@ -64,7 +64,6 @@ impl<'a> Cdr<'a> {
         Ok(&self.body[start..end])
     }
 
-    /// Reads one byte.
     pub(crate) fn byte(&mut self) -> Result<u8, String> {
         Ok(self.take(1, 1)?[0])
     }

@@ -78,12 +78,10 @@ pub(crate) fn logs_in(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Erro
     Ok(found)
 }
 
-/// Returns whether a path is the folder of a bag.
 fn is_bag(path: &Path) -> bool {
     path.join("metadata.yaml").is_file() && parts_of(path).is_ok_and(|parts| !parts.is_empty())
 }
 
-/// Returns the folders in a folder.
 fn folders_of(path: &Path) -> std::io::Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(path)?.flatten().map(|entry| entry.path());
     let mut folders: Vec<PathBuf> = entries.filter(|path| path.is_dir()).collect();

@@ -185,14 +185,12 @@ impl RunInterval {
         Ok(Self { line, start, end, relative, suite, motion, log })
     }
 
-    /// Returns whether the interval is of this log.
     fn is_of(&self, log: &Log) -> bool {
         let name = log.path.file_name().map(|name| name.to_string_lossy());
         self.log.as_ref().is_none_or(|wanted| name.is_some_and(|name| name == wanted.as_str()))
     }
 }
 
-/// Returns a header in quotes.
 fn quoted(header: &csv::StringRecord) -> String {
     format!("{:?}", header.iter().collect::<Vec<_>>().join(","))
 }

@@ -37,7 +37,6 @@ impl Loss {
         }
     }
 
-    /// Counts a lost message and its time.
     pub(crate) fn count(&mut self, log_time: i64) {
         self.messages += 1;
         let [first, last] = self.received.unwrap_or([log_time; 2]);

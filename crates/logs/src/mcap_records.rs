@@ -145,7 +145,6 @@ impl Piece {
     }
 }
 
-/// Names a kind of record.
 fn name(kind: u8) -> &'static str {
     match kind {
         op::SCHEMA => "a schema",

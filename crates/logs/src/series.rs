@@ -39,7 +39,6 @@ pub(crate) struct TopicStates {
 }
 
 impl TopicStates {
-    /// Returns an empty series of a topic.
     pub(crate) fn new(topic: usize) -> Self {
         Self { topic, ..Self::default() }
     }

@@ -105,7 +105,6 @@ mod tests {
         }
     }
 
-    /// Returns the steps in a journal.
     fn steps(journal: &Path) -> BTreeMap<String, Value> {
         let text = std::fs::read_to_string(journal).unwrap_or_default();
         let file = serde_json::from_str::<Value>(&text).unwrap_or_default();

@@ -69,12 +69,10 @@ impl InspectedRun {
         }
     }
 
-    /// Returns whether the run has recorded temperatures.
     pub(crate) fn has_temperatures(&self) -> bool {
         self.joints.iter().any(|joint| joint.temperature.is_some())
     }
 
-    /// Returns the number of joints n.
     pub(crate) fn joint_count(&self) -> usize {
         self.joints.len()
     }

@@ -39,7 +39,6 @@ pub struct DefectPlace {
 }
 
 impl Refusal {
-    /// Groups the defects of one recording by kind.
     pub(crate) fn of_recording(defects: Vec<Defect>) -> Vec<Self> {
         let mut refusals = Vec::new();
         for defect in defects {
@@ -87,7 +86,6 @@ fn add(all: &mut Vec<Refusal>, more: Refusal, recordings: usize) {
     }
 }
 
-/// Returns the option that accepts a defect.
 fn acceptance(kind: DefectKind) -> Option<String> {
     match kind {
         // Rounded up to the microsecond, so that it accepts the gap.

@@ -145,7 +145,6 @@ mod tests {
     use crate::memory::MemoryRuns;
     use crate::run::Run;
 
-    /// Returns runs with these suites and motions.
     fn source(suites: &[(Option<&str>, Option<&str>)]) -> MemoryRuns {
         let mut source = MemoryRuns::default();
         for (suite, motion) in suites {

@@ -68,7 +68,6 @@ fn log(
     Ok(Log::read(path, &options)?)
 }
 
-/// Returns runs of a log, which have no defect.
 fn runs(
     logs: &[Log],
     cuts: &[Cut],

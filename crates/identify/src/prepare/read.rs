@@ -194,7 +194,7 @@ fn with_compensation(mut run: Run, robot: &Robot) -> Run {
     run
 }
 
-/// Checks that names are those of the robot's joints, if any are given.
+/// Checks that each name is a joint's and each joint has one, if any are given.
 fn check_names(robot: &Robot, names: &[String]) -> Result<()> {
     let joints: Vec<String> = robot.joints().iter().map(|joint| joint.name.clone()).collect();
     let all = names.len() == joints.len() && joints.iter().all(|joint| names.contains(joint));

@@ -13,7 +13,6 @@ const BEYOND: f64 = 0.2;
 /// The first, the lowest and the highest position of a joint in a recording \[rad\].
 pub(crate) type Extent = [f64; 3];
 
-/// Returns the extent of each joint.
 pub(crate) fn extents(run: &Run) -> Vec<Extent> {
     let of = |joint: usize| {
         let q = || (0..run.len()).map(|k| run.q(k)[joint]);

@@ -35,7 +35,6 @@ pub(super) struct Assignment {
 }
 
 impl Assignment {
-    /// Returns the columns of each quantity beside the time.
     pub(super) fn lists(&self) -> [(Quantity, &[Column]); 4] {
         let tau = self.tau.as_ref().map(|(columns, _)| &columns[..]);
         [

@@ -36,7 +36,6 @@ pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> 
     parse_csv(path, &content(path)?, options)
 }
 
-/// Returns the content of a file.
 pub(super) fn content(path: &Path) -> Result<Vec<u8>, Vec<Defect>> {
     reachtube_files::bytes(path).map_err(|source| {
         let problem = format!("cannot read: {source}");

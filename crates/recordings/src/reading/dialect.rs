@@ -55,7 +55,6 @@ impl Dialect {
         Ok(Self { separator, start, end, names, fields, line })
     }
 
-    /// Returns the separator for messages.
     pub(super) fn separator_name(&self) -> &'static str {
         match self.separator {
             b';' => "semicolons",
@@ -108,7 +107,7 @@ impl Dialect {
         }
     }
 
-    /// Drops fields that stand for nothing: those of unnamed columns, and all of a blank line.
+    /// Drops fields that stand for nothing: of unnamed columns, and of a blank line.
     fn trim(&self, fields: &mut Vec<&[u8]>) {
         if self.separator == b' ' {
             fields.retain(|field| !field.is_empty());
@@ -124,7 +123,6 @@ impl Dialect {
     }
 }
 
-/// Returns the number of bytes before the end of the line at the start of some text.
 pub(super) fn end_of_line(text: &[u8]) -> usize {
     text.iter().position(|byte| *byte == b'\n').unwrap_or(text.len())
 }

@@ -106,7 +106,6 @@ fn is_number(word: &str) -> bool {
     word.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// Returns whether a word may say which joint it is.
 fn is_of_joint(word: &str) -> bool {
     let speaks = quantity(word).is_some()
         || origin(word).is_some()

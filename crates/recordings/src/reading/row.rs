@@ -74,7 +74,6 @@ pub(super) fn time(field: &[u8], value: f64) -> i128 {
     picoseconds(text).unwrap_or((value * 1e12) as i128)
 }
 
-/// Returns the field at the start of some text.
 fn field(text: &[u8], separator: u8) -> &[u8] {
     let is_end = |byte: &u8| *byte == separator || matches!(byte, b'\n' | b'\r' | b'"');
     let end = text.iter().position(is_end);

@@ -91,7 +91,6 @@ impl Table {
         self.rows.get(row).and_then(|row| row.time)
     }
 
-    /// Returns the value of the first column in the first row.
     pub(super) fn first(&self) -> Option<f64> {
         self.values.first().copied()
     }

@@ -22,7 +22,6 @@ pub(super) struct TimeColumns {
 }
 
 impl TimeColumns {
-    /// Returns whether the time is in this column.
     pub(super) fn contains(&self, at: usize) -> bool {
         self.at == at || self.nanoseconds == Some(at)
     }

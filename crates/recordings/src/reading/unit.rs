@@ -26,7 +26,6 @@ impl TimeUnit {
     pub(super) const ALL: [Self; 4] =
         [Self::Seconds, Self::Milliseconds, Self::Microseconds, Self::Nanoseconds];
 
-    /// Returns the number of units in a second.
     pub(super) fn per_second(self) -> i128 {
         match self {
             Self::Seconds => 1,
@@ -70,7 +69,6 @@ pub enum AngleUnit {
 impl AngleUnit {
     pub(super) const ALL: [Self; 2] = [Self::Radians, Self::Degrees];
 
-    /// Returns the number of units in a radian.
     pub(super) fn per_radian(self) -> f64 {
         match self {
             Self::Radians => 1.0,
