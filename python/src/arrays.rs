@@ -32,7 +32,7 @@ pub(crate) fn values(name: &str, array: &Input<'_>, shape: &[usize]) -> Result<V
 ///
 /// # Panics
 ///
-/// Panics where the number of values does not fit the shape.
+/// Panics if the number of values does not fit the shape.
 pub(crate) fn array<'py>(py: Python<'py>, values: Vec<f64>, shape: &[usize]) -> Output<'py> {
     let array = ArrayD::from_shape_vec(IxDyn(shape), values);
     array.expect("the values fit the shape").into_pyarray(py)

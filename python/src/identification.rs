@@ -15,8 +15,8 @@ use crate::recordings::{NativeRun, csv};
 use crate::robot::NativeRobot;
 use crate::watched::watched;
 
-/// What Python keeps of an identification: what `reachtube identify --json` prints, the robot file
-/// with standard errors, and the report page.
+/// The parts of an identification that Python keeps: what `reachtube identify --json` prints, the
+/// robot file with standard errors, and the report page.
 type Identified = (String, String, String);
 
 /// Recordings of one use: paths, and runs in memory with their places in the order of recording.

@@ -14,7 +14,7 @@ use crate::failure::{Failure, Result};
 use crate::recordings::NativeRun;
 use crate::watched::watched_alone;
 
-/// How a log is cut into runs.
+/// Options for cutting a log into runs.
 #[derive(Debug)]
 struct Cutting {
     marker: Option<String>,

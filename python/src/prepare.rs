@@ -18,7 +18,7 @@ use crate::recordings::NativeSource;
 use crate::robot::NativeRobot;
 use crate::watched::watched;
 
-/// How logs are cut.
+/// Options for cutting logs.
 #[derive(Debug, Clone, Copy)]
 struct Cutting {
     window: Option<f64>,
@@ -71,7 +71,7 @@ fn cut(
 ) -> Result<(MemoryRuns, f64, Vec<String>)> {
     let Cutting { window, repeats, compensate } = cutting;
     if compensate {
-        // A robot without masses has no gravity that could be taken off.
+        // A robot without masses has no gravity that could be subtracted.
         robot.check_physical()?;
     }
     let entries: Vec<LogEntry> = logs.paths.iter().cloned().map(LogEntry::from).collect();

@@ -88,7 +88,7 @@ impl NativeRun {
         run.map(|run| Self { run: run.into() }).map_err(|failure| failure.raised(py))
     }
 
-    /// Returns times since the first sample, q, qd, tau and, where they were recorded, the
+    /// Returns times since the first sample, q, qd, tau and, if they were recorded, the
     /// temperatures.
     #[allow(clippy::type_complexity)]
     fn arrays<'py>(
@@ -187,7 +187,7 @@ impl NativeSource {
 type NamedRun<'py> =
     (PyRef<'py, NativeRun>, String, Option<String>, Option<String>, Option<u64>, Option<f64>);
 
-/// What the index says of a run: name, suite, motion, kind, order and temperature.
+/// The entry of a run in the index: name, suite, motion, kind, order and temperature.
 type IndexRow = (String, Option<String>, Option<String>, Option<String>, u64, Option<f64>);
 
 #[pymethods]
@@ -211,7 +211,7 @@ impl NativeSource {
         Self::in_memory(all)
     }
 
-    /// Returns what the index says of each run.
+    /// Returns the entry of each run in the index.
     fn index(&self) -> Vec<IndexRow> {
         let row = |run: &RunEntry| {
             let RunEntry { file, suite, motion, kind, order, temperature, .. } = run.clone();

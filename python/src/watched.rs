@@ -14,17 +14,17 @@ use reachtube::Progress;
 use crate::failure::{Failure, Result};
 use crate::pool;
 
-/// How often Python is asked for an interrupt.
+/// Interval at which interrupts of Python are checked.
 const POLL: Duration = Duration::from_millis(50);
 
-/// How long an interrupted job may take to end before it is left alone: a part of a step that
-/// nothing interrupts ends by itself, and its result is dropped.
+/// Time for an interrupted job to end before it is abandoned: a part of a step that nothing
+/// interrupts ends by itself, and its result is dropped.
 const GRACE: Duration = Duration::from_millis(80);
 
 /// Stack of a job, bytes, as large as a main thread's.
 const STACK: usize = 8 << 20;
 
-/// What a job says of itself, and whether it is still wanted.
+/// Messages of a job, and its interrupt.
 #[derive(Debug, Default)]
 pub(crate) struct Watch {
     cancelled: AtomicBool,

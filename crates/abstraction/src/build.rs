@@ -26,8 +26,8 @@ impl PolynomialModel {
     /// # Errors
     ///
     /// - [`Error::OrderZero`] for order 0.
-    /// - [`Error::SingularMassMatrix`] where M_m(q_a) is not positive definite.
-    /// - [`Error::TooManyTerms`] and [`Error::Space`] where polynomials of this order do not fit.
+    /// - [`Error::SingularMassMatrix`] if M_m(q_a) is not positive definite.
+    /// - [`Error::TooManyTerms`] and [`Error::Space`] if polynomials of this order do not fit.
     pub fn new(robot: &Robot, kind: ModelKind, order: u32, point: &ExpansionPoint) -> Result<Self> {
         if order == 0 {
             return Err(Error::OrderZero);

@@ -63,7 +63,7 @@ impl PolynomialModel {
     /// # Errors
     ///
     /// [`Error::File`] where the file cannot be read, [`Error::ModelFile`] where it is not the file
-    /// of a model or was changed, and [`Error::Robot`] where its robot is wrong.
+    /// of a model or was changed, and [`Error::Robot`] if its robot is wrong.
     pub fn load(path: &Path) -> Result<Self> {
         Self::parse(&reachtube_files::read_text(path, REMEDY)?, path)
     }

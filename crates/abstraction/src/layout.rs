@@ -4,7 +4,7 @@ use reachtube_robot::JointKind;
 
 use crate::model_kind::ModelKind;
 
-/// The variables of a model: q̇, then sin q and cos q where the model has them, then u; n of each.
+/// The variables of a model: q̇, then sin q and cos q if the model has them, then u; n of each.
 ///
 /// A prismatic joint has its position q and the constant 1 in place of sin q and cos q.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -43,7 +43,7 @@ pub struct PolynomialModel {
     acceleration: Vec<TaylorPolynomial>,
     map: PolynomialMap,
     robot: RobotDescription,
-    /// The polynomials as flowpipes take them, made when first asked for.
+    /// The polynomials as flowpipes take them, made on first use.
     pub(crate) system: OnceLock<PolynomialSystem>,
 }
 
@@ -194,7 +194,7 @@ impl PolynomialModel {
     ///
     /// # Panics
     ///
-    /// Panics where a slice has another length.
+    /// Panics if a slice has another length.
     pub fn rate_into<T: Powers>(
         &self,
         x: &[T],

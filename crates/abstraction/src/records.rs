@@ -28,7 +28,7 @@ pub struct Records {
     pub acceleration: Vec<Vec<TermRecord>>,
 }
 
-/// A model of more possible terms takes minutes to make again, which a file must not ask for.
+/// A model of more possible terms takes minutes to make again, which a file must not request.
 const MOST_MONOMIALS: f64 = 1e12;
 
 /// Returns the number of monomials in `variables` variables up to the degree `order`.

@@ -47,7 +47,7 @@ pub fn versioned(
 ///
 /// # Panics
 ///
-/// Panics where `value` cannot be JSON, for example because the keys of a map are not strings.
+/// Panics if `value` cannot be JSON, for example because the keys of a map are not strings.
 #[must_use]
 pub fn to_lines(value: &impl Serialize) -> String {
     let mut out = Vec::new();

@@ -134,7 +134,7 @@ fn temporary_in(folder: &Path) -> std::io::Result<NamedTempFile> {
     }
 }
 
-/// Returns the error without the name of the temporary file, which users do not know.
+/// Returns the error without the name of the temporary file, which means nothing to users.
 fn unnamed(error: std::io::Error) -> std::io::Error {
     error.kind().into()
 }

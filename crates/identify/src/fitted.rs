@@ -39,7 +39,7 @@ pub(crate) struct Fitted {
     pub found: Robot,
 }
 
-/// What the recordings say about their own columns.
+/// Faults of the columns that the recordings show.
 pub(crate) struct Plausibility {
     /// Gains of the joints' torques relative to each other.
     pub gains: Vec<Gain>,

@@ -62,7 +62,7 @@ impl Inputs {
     /// Recordings are read twice, one by one: first for what decides how all are prepared, then to
     /// prepare them. If there are many exciting motions, not all samples are kept.
     ///
-    /// The controllers of `robot` compensate, where a recording has the input u.
+    /// The controllers of `robot` compensate, if a recording has the input u.
     pub(crate) fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {
         let IdentifySettings { rest, friction, dynamic, validate, prepare, model, .. } = settings;
         let groups = [rest, friction, dynamic, validate];

@@ -8,7 +8,7 @@ use reachtube_robot::{Parameter, ParameterKind, Regressor, Robot};
 use std::ops::Range;
 
 /// Samples of a group of recordings that are used: more would follow one another so closely that
-/// they tell nothing new.
+/// they add no information.
 const MOST_SAMPLES: usize = 30_000;
 
 /// Speed up to which friction must rise without a velocity limit of the robot, in parts of the
@@ -234,7 +234,6 @@ impl Samples {
         all
     }
 
-    /// Returns the number of rows.
     pub(crate) fn len(&self) -> usize {
         self.torque.len()
     }
@@ -244,7 +243,6 @@ impl Samples {
         self.torque.is_empty()
     }
 
-    /// Returns row r of Y.
     pub(crate) fn row(&self, r: usize) -> &[f64] {
         let width = self.columns.len();
         &self.regressor[r * width..(r + 1) * width]

@@ -32,7 +32,7 @@ pub(crate) struct KnownFriction<'a> {
 }
 
 /// Returns the sign of the last velocity of each joint before sample `rest` that was above `speed`
-/// \[rad/s\], n entries; 0 where the recording has none.
+/// \[rad/s\], n entries; 0 if the recording has none.
 pub(crate) fn sides(log: &PreparedLog, rest: usize, speed: f64) -> Vec<f64> {
     let of_joint = |joint: usize| {
         let before = (0..rest).rev().map(|k| log.qd(k)[joint]);
@@ -50,8 +50,8 @@ pub(crate) struct Rests {
     pub q: Vec<f64>,
     /// Mean torques \[N m\], row-major rests x n.
     pub tau: Vec<f64>,
-    /// The sides from which the joints come, row-major rests x n: 1 from below, -1 from above, 0
-    /// where the recordings do not show it.
+    /// The sides from which the joints come, row-major rests x n: 1 from below, -1 from above, 0 if
+    /// the recordings do not show it.
     pub sides: Vec<f64>,
 }
 
@@ -64,7 +64,6 @@ pub(crate) struct Kept {
 }
 
 impl Rests {
-    /// Returns the number of rests.
     pub(crate) fn len(&self) -> usize {
         self.q.len() / self.joints.max(1)
     }

@@ -16,7 +16,7 @@ use crate::loss::Loss;
 /// Longest message that is read, bytes.
 const LARGEST: i32 = 1 << 26;
 
-/// What a message starts with where rosbag2 compressed it by itself.
+/// First bytes of a message that rosbag2 compressed by itself.
 const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// Reads a file and passes the messages of the topics `wanted` on, in the order of the file.
@@ -232,7 +232,7 @@ impl Scan<'_> {
             Ok(())
         };
         count().ok();
-        // The index does not tell topics apart.
+        // The index does not distinguish topics.
         if roles.len() < self.contents.topics.len() {
             loss.messages = 0;
         }
@@ -272,7 +272,7 @@ fn plain(data: &[u8]) -> Result<Cow<'_, [u8]>, String> {
     Ok(message.into())
 }
 
-/// What stopped the reading of messages.
+/// The reason why the reading of messages ended.
 enum Stop {
     /// The file.
     File(rusqlite::Error),

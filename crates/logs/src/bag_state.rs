@@ -50,7 +50,7 @@ impl BagJournal {
 pub(crate) struct BagState {
     /// Size of a page, bytes.
     pub(crate) page: u64,
-    /// What lies beside the file.
+    /// The files beside it.
     pub(crate) journal: BagJournal,
     /// Size that the header announces, where it does, bytes.
     announced: Option<u64>,

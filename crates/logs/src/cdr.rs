@@ -7,7 +7,7 @@ const HEADER: usize = 4;
 /// Most bytes that may follow a message, which writers add to round its length up.
 const MOST_PADDING: usize = 7;
 
-/// What a message starts with where rosbag2 compressed it by itself.
+/// First bytes of a message that rosbag2 compressed by itself.
 const ZSTD: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
 /// A reader of one message.
@@ -112,7 +112,7 @@ impl<'a> Cdr<'a> {
     /// Reads a sequence of f64.
     pub(crate) fn doubles(&mut self) -> Result<Doubles<'a>, String> {
         let count = self.u32()? as usize;
-        // Writers do not align where no element follows.
+        // Writers do not align if no element follows.
         let size = if count == 0 { 1 } else { 8 };
         let bytes = self.take(size, count.saturating_mul(8))?;
         Ok(Doubles { bytes, order: self.order })
@@ -136,7 +136,6 @@ pub(crate) struct Doubles<'a> {
 }
 
 impl Doubles<'_> {
-    /// Returns the number of values.
     pub(crate) fn len(self) -> usize {
         self.bytes.len() / 8
     }

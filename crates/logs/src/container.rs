@@ -32,13 +32,13 @@ pub(crate) struct Topic {
 pub(crate) struct WantedTopics<'a> {
     /// Topics of joint states; empty for every topic of joint states.
     pub(crate) joints: &'a [String],
-    /// The topics of joint states that were met where none is named.
+    /// The topics of joint states that were met if none is named.
     pub(crate) found: &'a RefCell<Vec<String>>,
     /// Topic of the markers of runs.
     pub(crate) marker: Option<&'a str>,
 }
 
-/// What the messages of a topic are for.
+/// The role of a topic's messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
     /// Joint states; the number of the topic in [`WantedTopics::joints`], or else in
@@ -49,7 +49,7 @@ pub(crate) enum Role {
 }
 
 impl WantedTopics<'_> {
-    /// Returns the role of a topic, `None` where it is not read.
+    /// Returns the role of a topic, `None` if it is not read.
     ///
     /// # Errors
     ///
@@ -105,7 +105,7 @@ pub(crate) struct RawMessage<'a> {
 /// Takes the messages one by one. A message that cannot be decoded gives a clause about it.
 pub(crate) type Receive<'a> = dyn FnMut(RawMessage<'_>) -> Result<(), String> + 'a;
 
-/// What a file holds besides the messages that were passed on.
+/// Contents of a file besides the messages that were passed on.
 #[derive(Debug, Default)]
 pub(crate) struct Contents {
     /// All topics.

@@ -14,7 +14,7 @@ pub struct Cut {
     pub samples: Range<usize>,
     /// The test suite, where the run belongs to one.
     pub suite: Option<String>,
-    /// The motion that the suite is part of, where it is known.
+    /// The motion that the suite is part of, if it is known.
     pub motion: Option<String>,
 }
 

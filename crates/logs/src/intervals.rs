@@ -137,7 +137,7 @@ impl Intervals {
             let zero = if row.relative { i128::from(first.time) } else { 0 };
             1000 * (i128::from(nanoseconds) - zero)
         };
-        // A stamp says by itself which log it is in.
+        // A stamp alone determines its log.
         if !row.relative && !(time(first.time)..=time(last.time)).contains(&row.start) {
             return Ok(None);
         }

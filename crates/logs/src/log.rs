@@ -16,7 +16,7 @@ use crate::sample::{Labels, Sample, defects};
 use crate::seconds::decimal;
 use crate::series::TopicStates;
 
-/// What to read from a log.
+/// The parts to read from a log.
 #[derive(Debug, Clone, Default)]
 pub struct LogOptions {
     /// Topics with `sensor_msgs/msg/JointState`. Several complement each other: values with the
@@ -38,7 +38,7 @@ pub struct LogOptions {
 pub(crate) struct Marker {
     /// Time at which the log received it, ns.
     pub(crate) received: i64,
-    /// Name of the suite (empty where none is given); `None` outside of runs.
+    /// Name of the suite (empty if none is given); `None` outside of runs.
     pub(crate) suite: Option<String>,
 }
 
@@ -77,7 +77,7 @@ pub struct Log {
     pub(crate) unused: Vec<String>,
 }
 
-/// What is collected while the files of a log are read.
+/// Data collected while the files of a log are read.
 #[derive(Debug)]
 struct Collected {
     /// Joint states, one series per topic of `topics`.
@@ -98,11 +98,11 @@ impl Log {
     ///
     /// # Errors
     ///
-    /// - [`Error::File`] and [`Error::Format`] where there is no file that can be read.
-    /// - [`Error::Damaged`] where a part of it cannot be read, unless `recover` is set.
-    /// - [`Error::NoTopic`], [`Error::TopicType`], [`Error::NoMessages`], [`Error::ZeroStamps`]
-    ///   and [`Error::Setting`] where the topics do not fit the options.
-    /// - [`Error::Recordings`] where several topics are read and the stamps of one do not increase.
+    /// - [`Error::File`] and [`Error::Format`] if there is no file that can be read.
+    /// - [`Error::Damaged`] if a part of it cannot be read, unless `recover` is set.
+    /// - [`Error::NoTopic`], [`Error::TopicType`], [`Error::NoMessages`], [`Error::ZeroStamps`] and
+    ///   [`Error::Setting`] if the topics do not fit the options.
+    /// - [`Error::Recordings`] if several topics are read and the stamps of one do not increase.
     pub fn read(path: &Path, options: &LogOptions) -> Result<Self> {
         check_options(options)?;
         let mut collected = collect(path, options)?;
@@ -219,7 +219,7 @@ impl Log {
     }
 }
 
-/// Checks what the options say by themselves.
+/// Checks the options alone.
 fn check_options(options: &LogOptions) -> Result<()> {
     let repeated = |names: &[String]| {
         let mut before = std::collections::BTreeSet::new();

@@ -8,7 +8,7 @@ use crate::sample::{Labels, Sample};
 use crate::seconds::decimal;
 use crate::series::TopicStates;
 
-/// Says which times were taken.
+/// Notes which times were used.
 pub(crate) fn time_note(path: &Path, series: &TopicStates, time: LogTime) -> String {
     let path = path.display();
     match time {
@@ -29,7 +29,7 @@ pub(crate) fn time_note(path: &Path, series: &TopicStates, time: LogTime) -> Str
     }
 }
 
-/// Says that messages were out of order.
+/// Notes that messages were out of order.
 pub(crate) fn order_note(path: &Path, topic: &str, late: usize) -> String {
     format!(
         "{}: {late} messages of {topic} stand after later ones in the file; all were sorted by the \
@@ -38,7 +38,7 @@ pub(crate) fn order_note(path: &Path, topic: &str, late: usize) -> String {
     )
 }
 
-/// Says by how much the stamps of a topic differ from the stamps of the first one, ns.
+/// Notes by how much the stamps of a topic differ from the stamps of the first one, ns.
 pub(crate) fn shift_note(labels: &Labels<'_>, topic: usize, largest: i64) -> String {
     format!(
         "{}: the values of {} were interpolated at the stamps of {}, from which its own differ by \
@@ -50,7 +50,7 @@ pub(crate) fn shift_note(labels: &Labels<'_>, topic: usize, largest: i64) -> Str
     )
 }
 
-/// Says where the joints were found.
+/// Notes where the joints were found.
 pub(crate) fn series_notes(
     path: &Path,
     topic: &str,

@@ -12,15 +12,15 @@ use crate::seconds::decimal;
 pub struct Loss {
     /// Path of the file.
     pub file: String,
-    /// Offset in the file at which the part starts, bytes, where it is known.
+    /// Offset in the file at which the part starts, bytes, if it is known.
     pub offset: Option<u64>,
-    /// What is wrong there.
+    /// The problem.
     pub problem: String,
-    /// Number of bytes that are not used, where it is known.
+    /// Number of bytes that are not used, if it is known.
     pub bytes: Option<u64>,
-    /// Number of messages of the topics asked for that are known to be lost; more may be.
+    /// Number of messages of the requested topics that are known to be lost; more may be.
     pub messages: u64,
-    /// Times at which the log received the first and the last message of the part, where they are
+    /// Times at which the log received the first and the last message of the part, if they are
     /// known, ns since 1970.
     pub received: Option<[i64; 2]>,
 }

@@ -63,7 +63,7 @@ struct Scan<'a, 'b> {
     numbers: BTreeMap<usize, u64>,
 }
 
-/// What stopped the reading of a chunk.
+/// The reason why the reading of a chunk ended.
 enum Stop {
     /// Its bytes.
     Chunk(McapError),

@@ -32,7 +32,7 @@ pub struct RecordedRun {
     pub file: String,
     /// The test suite, where it belongs to one.
     pub suite: Option<String>,
-    /// The motion that the suite is part of, where it is known.
+    /// The motion that the suite is part of, if it is known.
     pub motion: Option<String>,
     /// The log.
     pub log: String,
@@ -50,7 +50,7 @@ pub struct RecordedRun {
 ///
 /// # Errors
 ///
-/// - [`Error::NoRun`] where there is no run.
+/// - [`Error::NoRun`] if there is no run.
 /// - [`Error::Recordings`] with the defects of all runs: values that are missing or not finite,
 ///   times that do not increase, and gaps beyond `gap_limit`. Each kind is reported once for a
 ///   run and a joint, with the number of messages.

@@ -52,9 +52,9 @@ struct Likeness {
     step: f64,
 }
 
-/// Groups the runs that have no suite yet: runs that start within 0.05 rad or m of the first run
-/// of a suite and whose velocities correlate with it to 0.95 or more become one suite. Runs that
-/// nothing repeats get none. With `align`, a run is shifted in its log by its lag.
+/// Groups the runs that have no suite yet: runs that start within 0.05 rad or m of the first run of
+/// a suite and whose velocities correlate with it to 0.95 or more become one suite. Runs that
+/// nothing repeats get none. With `align`, a run moves in its log by its lag.
 ///
 /// Returns what was found, in the order of the suites' first runs.
 pub fn find_repeats(logs: &[Log], cuts: &mut [Cut], align: bool) -> Vec<Repeats> {
@@ -113,8 +113,8 @@ fn shift(logs: &[Log], cut: &mut Cut, lag: isize) {
     cut.samples = start..start + length;
 }
 
-/// Compares a run with the first one of a suite; `None` where they start at different places or
-/// differ in duration or sample time.
+/// Compares a run with the first one of a suite; `None` if they start at different places or differ
+/// in duration or sample time.
 fn likeness(logs: &[Log], first: &Cut, run: &Cut) -> Option<Likeness> {
     let (a, b) = (&logs[first.log], &logs[run.log]);
     let (q_a, q_b) = (a.part(first.samples.start, 0), b.part(run.samples.start, 0));

@@ -27,7 +27,7 @@ impl JointQuantity {
     }
 }
 
-/// What is wrong with a sample. Joints count from 0.
+/// The problem with a sample. Joints count from 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum MessageFault {
     /// The message does not name the joint.
@@ -125,7 +125,7 @@ pub(crate) struct Sample {
     pub(crate) topic: usize,
     /// Number of the message in its topic, from 1.
     pub(crate) message: u64,
-    /// What is wrong with it.
+    /// The problem.
     pub(crate) problems: Box<[MessageFault]>,
 }
 

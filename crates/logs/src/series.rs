@@ -21,8 +21,8 @@ pub(crate) struct TopicStates {
     pub(crate) topic: usize,
     /// The samples, in the order of the log.
     pub(crate) samples: Vec<Sample>,
-    /// Positions, velocities and efforts of all joints, row-major K x 3n; NaN where a message has
-    /// no finite value.
+    /// Positions, velocities and efforts of all joints, row-major K x 3n; NaN if a message has no
+    /// finite value.
     pub(crate) values: Vec<f64>,
     /// Number of messages, used or not.
     pub(crate) messages: u64,

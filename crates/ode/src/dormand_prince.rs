@@ -56,7 +56,7 @@ impl DormandPrince {
     ///
     /// # Panics
     ///
-    /// Panics where the absolute tolerance is not positive or the relative tolerance is negative,
+    /// Panics if the absolute tolerance is not positive or the relative tolerance is negative,
     /// because an entry of 0 never meets them.
     pub fn new(dimension: usize, tolerance: Tolerance) -> Self {
         assert!(
@@ -95,7 +95,7 @@ impl DormandPrince {
     ///
     /// # Panics
     ///
-    /// Panics where the length of x differs from the dimension of the integrator.
+    /// Panics if the length of x differs from the dimension of the integrator.
     pub fn integrate<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -111,7 +111,7 @@ impl DormandPrince {
     ///
     /// # Panics
     ///
-    /// Panics where the length of x differs from the dimension of the integrator.
+    /// Panics if the length of x differs from the dimension of the integrator.
     pub fn integrate_dense<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -174,8 +174,8 @@ impl DormandPrince {
     ///
     /// # Panics
     ///
-    /// Panics where the length of the start differs from the dimension of the integrator. It also
-    /// panics where the inputs do not form one row per sample except the last.
+    /// Panics if the length of the start differs from the dimension of the integrator. It also
+    /// panics if the inputs do not form one row per sample except the last.
     pub fn simulate<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -208,7 +208,7 @@ impl DormandPrince {
     ///
     /// # Panics
     ///
-    /// Panics where the length of x differs from the dimension of the integrator.
+    /// Panics if the length of x differs from the dimension of the integrator.
     pub fn sample<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
@@ -286,7 +286,7 @@ impl DormandPrince {
         let step =
             if fastest <= 1e-15 { (1e-3 * guess).max(1e-6) } else { (0.01 / fastest).powf(0.2) };
         let step = step.min(100.0 * guess).min(end - t);
-        // `step` is NaN where the rate is NaN; a step over the whole span then fails.
+        // `step` is NaN if the rate is NaN; a step over the whole span then fails.
         if step > 0.0 { step } else { end - t }
     }
 }

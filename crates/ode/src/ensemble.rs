@@ -81,8 +81,8 @@ impl<S: Lanewise> Ensemble<S> {
     ///
     /// # Panics
     ///
-    /// Panics where the length of a start differs from the dimension of the ensemble. It also
-    /// panics where inputs differ in length, or do not form one row per sample except the last.
+    /// Panics if the length of a start differs from the dimension of the ensemble. It also panics
+    /// if inputs differ in length, or do not form one row per sample except the last.
     pub fn integrate<F: VectorField<S> + ?Sized>(
         &mut self,
         field: &mut F,

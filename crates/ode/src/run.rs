@@ -6,7 +6,7 @@ pub struct InitialValueProblem<'a> {
     /// State x at the first sample (n).
     pub start: &'a [f64],
     /// Inputs u, row-major, with one row of m entries per sample except the last. Row k acts from
-    /// sample k to sample k + 1. It is empty where there is no input.
+    /// sample k to sample k + 1. It is empty if there is no input.
     pub inputs: &'a [f64],
 }
 
@@ -15,7 +15,7 @@ impl<'a> InitialValueProblem<'a> {
     ///
     /// # Panics
     ///
-    /// Panics where the inputs do not form one row per span between samples.
+    /// Panics if the inputs do not form one row per span between samples.
     pub(crate) fn input_dimension(&self, times: &[f64]) -> usize {
         let (spans, entries) = (times.len().saturating_sub(1).max(1), self.inputs.len());
         assert_eq!(

@@ -42,7 +42,7 @@ impl<S: Scalar> RungeKutta4<S> {
     ///
     /// # Panics
     ///
-    /// Panics where the length of x differs from the dimension of the integrator.
+    /// Panics if the length of x differs from the dimension of the integrator.
     pub fn integrate<F: VectorField<S> + ?Sized>(
         &mut self,
         field: &mut F,
@@ -61,7 +61,7 @@ impl<S: Scalar> RungeKutta4<S> {
     ///
     /// # Panics
     ///
-    /// Panics where the length of x differs from the dimension of the integrator.
+    /// Panics if the length of x differs from the dimension of the integrator.
     pub(crate) fn step<F: VectorField<S> + ?Sized>(
         &mut self,
         field: &mut F,

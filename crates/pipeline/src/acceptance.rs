@@ -42,7 +42,7 @@ impl Built {
 
     /// Returns the factor by which the sets would have to grow for a motion that was left out of
     /// all that was made of the motions, if it is not accepted and the sets have no allowance for
-    /// it. Repeated recordings claim nothing of other motions.
+    /// it. Repeated recordings support no claim about other motions.
     pub(crate) fn left_out_not_accepted(&self) -> Option<f64> {
         let model = &self.answer.model;
         let preparation = model.preparation.as_ref();

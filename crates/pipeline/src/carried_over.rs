@@ -1,5 +1,5 @@
-//! How a model carries over to motions that it has not seen: each is left out of the
-//! identification, the fit and the sets.
+//! Evaluation of a model on motions that were left out: each is left out of the identification, the
+//! fit and the sets.
 
 use std::collections::BTreeSet;
 
@@ -22,7 +22,7 @@ const MOST_MOTIONS: usize = 60;
 /// A motion beside a model that has not seen it.
 #[derive(Debug, Clone)]
 pub(crate) struct Unseen {
-    /// How it lies to the sets of the others.
+    /// Its position relative to the sets of the others.
     pub left_out: LeftOut,
     /// The factor of the allowance's shape with which these sets enclose it; `None` if none does.
     pub factor: Option<f64>,

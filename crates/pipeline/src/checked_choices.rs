@@ -1,4 +1,4 @@
-//! What choices may be: the ranges of their numbers, and what compensated torques exclude.
+//! Limits of choices: the ranges of their numbers, and what compensated torques exclude.
 
 use reachtube_recordings::Torque;
 
@@ -20,7 +20,7 @@ impl Choices {
         self.check_torque(torque)
     }
 
-    /// Checks the numbers, whose ranges the options of a front end know already.
+    /// Checks the numbers, whose ranges the options of a front end already check.
     fn check_numbers(&self) -> Result<()> {
         let above = "a finite number above 0";
         let single = [

@@ -34,7 +34,7 @@ pub struct Choices {
     pub robot: Option<String>,
     /// Recordings: files or folders.
     pub data: Vec<PathBuf>,
-    /// What the recorded torques are.
+    /// The kind of the recorded torques.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<Torque>,
     /// Factors of the recorded torques, one per joint; for motor currents in N m/A.
@@ -71,8 +71,8 @@ pub struct Choices {
     /// Time up to which the model predicts, s: the length of the windows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub horizon: Option<f64>,
-    /// What is added to the radii of the smallest X0 and U, 3n, rad, rad/s and N m, for motions
-    /// that were not recorded.
+    /// Radii added to the smallest X0 and U, 3n, rad, rad/s and N m, for motions that were not
+    /// recorded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub allowance: Option<Vec<f64>>,
     /// Parameters of the nominal model that are fitted for small sets.
@@ -87,10 +87,10 @@ pub struct Choices {
     /// Joints that are held at positions, as `JOINT=VALUE`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lock: Vec<String>,
-    /// Columns of CSV files, where their names do not tell.
+    /// Columns of CSV files, if their names are ambiguous.
     #[serde(skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,
-    /// What to read from logs in MCAP and rosbag2, where they do not tell.
+    /// Topics, joints and times of MCAP and rosbag2 logs, if the logs are ambiguous.
     #[serde(skip_serializing_if = "is_default")]
     pub log: LogSettings,
     /// The reasons that a file gives for its choices, by their keys.
@@ -107,15 +107,15 @@ fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
 pub struct Choice {
     /// The key in the settings.
     pub key: &'static str,
-    /// What was chosen, in words.
+    /// The choice in words.
     pub value: String,
     /// The reason.
     pub reason: String,
 }
 
 impl Choices {
-    /// Reads choices and the reasons in the comments before them. The reasons do not count where a
-    /// value was edited since: they may be about another one.
+    /// Reads choices and the reasons in the comments before them. Reasons of a value that was
+    /// edited are dropped, because they may refer to the previous value.
     ///
     /// # Errors
     ///
@@ -175,8 +175,8 @@ impl Choices {
         model.is_useful() && worst.is_some_and(|(_, ratio)| ratio <= largest)
     }
 
-    /// Replaces choices by the ones that `given` has. Reasons are about values, and are dropped
-    /// where a value is another.
+    /// Replaces choices by the ones that `given` has. Reasons are about values, and are dropped if
+    /// a value is another.
     #[must_use]
     pub fn replaced_by(self, given: Self) -> Self {
         fn filled<T>(given: Vec<T>, own: Vec<T>) -> Vec<T> {
@@ -248,7 +248,6 @@ impl Choices {
         toml::to_string(self).expect("choices are a TOML table")
     }
 
-    /// Returns a digest of the values.
     fn digest(&self) -> String {
         let sha256 = Sha256::digest(self.values().as_bytes());
         sha256.iter().take(8).map(|byte| format!("{byte:02x}")).collect()

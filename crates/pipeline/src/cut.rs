@@ -19,18 +19,18 @@ use crate::windows::{Origin, Prepared, windows_of};
 pub struct Cut {
     /// The windows, whose torques are the input of the robot's model.
     pub windows: MemoryRuns,
-    /// What was done to the logs. A model that carries it takes other logs in the same way.
+    /// The preparation of the logs. A model that carries it takes other logs in the same way.
     pub preparation: Preparation,
-    /// What a user should know about the logs and what was done to them, in sentences.
+    /// Notes for the user about the logs and their preparation.
     pub notes: Vec<String>,
 }
 
 impl Cut {
     /// Reads logs and cuts them into windows of `horizon` \[s\]. Before that, torques of motors or
     /// links are filtered with a cut-off that is chosen from the logs, and the robot's gravity and
-    /// dry friction are taken off them; compensated torques stay as they are. Logs of the motions
-    /// `calibrate`, by name or pattern, choose no cut-off. `max_gap` is the longest time between
-    /// two samples, s.
+    /// dry friction are subtracted from them; compensated torques stay as they are. Logs of the
+    /// motions `calibrate`, by name or pattern, choose no cut-off. `max_gap` is the longest time
+    /// between two samples, s.
     ///
     /// # Errors
     ///

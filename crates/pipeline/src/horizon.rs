@@ -17,12 +17,12 @@ pub(crate) const MOST_WINDOWS: usize = 200;
 /// factor.
 const TOO_WIDE: f64 = 1.5;
 
-/// How wide the sets are at a horizon.
+/// Widths of the sets at a horizon.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HorizonWidths {
     /// The horizon, s.
     pub horizon: f64,
-    /// Half the width of each joint's set by the joint's displacement, n; empty where no sets were
+    /// Half the width of each joint's set by the joint's displacement, n; empty if no sets were
     /// found.
     pub ratios: Vec<f64>,
     /// Why no sets were found.
@@ -33,8 +33,8 @@ pub struct HorizonWidths {
 }
 
 impl HorizonWidths {
-    /// Returns the joint, from 0, whose set is widest beside its motion, and the ratio; infinite
-    /// where no sets were found.
+    /// Returns the joint, from 0, whose set is widest beside its motion, and the ratio; infinite if
+    /// no sets were found.
     #[must_use]
     pub(crate) fn worst(&self) -> (usize, f64) {
         let ratios = self.ratios.iter().copied().enumerate();
@@ -184,7 +184,6 @@ fn narrowest(tried: &[HorizonWidths]) -> usize {
     (0..tried.len()).rev().min_by(order).expect("a horizon was tried")
 }
 
-/// Returns the ratio of each joint.
 pub(crate) fn ratios(answer: &Answer) -> Vec<f64> {
     answer.found.usefulness.joints.iter().map(JointWidth::ratio).collect()
 }

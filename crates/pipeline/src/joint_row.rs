@@ -7,15 +7,15 @@ use crate::build::Built;
 pub struct JointRow {
     /// The joint's name.
     pub name: String,
-    /// Half the width of the set, rad (m); `None` where the reachable set was lost.
+    /// Half the width of the set, rad (m); `None` if the reachable set was lost.
     pub half_width: Option<f64>,
-    /// How far the joint moves in a window, root mean square, and at least 5 % of its range, rad
+    /// Displacement of the joint in a window, root mean square, and at least 5 % of its range, rad
     /// (m).
     pub displacement: f64,
-    /// Half the width by the displacement; `None` where the reachable set was lost.
+    /// Half the width by the displacement; `None` if the reachable set was lost.
     pub ratio: Option<f64>,
     /// The factor by which the set would have to grow where a motion that was held out leaves it
-    /// furthest; `None` where none could be compared.
+    /// furthest; `None` if none could be compared.
     pub growth: Option<f64>,
 }
 

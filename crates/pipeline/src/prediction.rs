@@ -1,4 +1,4 @@
-//! What the next of several motions may ask for.
+//! Prediction bound for the next of several motions.
 
 /// Quantiles of Student's distribution at 0.95, by its degrees of freedom from 1.
 const STUDENT: [f64; 30] = [

@@ -44,8 +44,8 @@ pub fn check_job(
 ///
 /// # Errors
 ///
-/// Logs that cannot be read or prepared, or that do not say how warm the robot was although the
-/// model needs it, and [`Error::NoWindow`](crate::Error::NoWindow) if none is as long as a window.
+/// Logs that cannot be read or prepared, or that lack the warmth of the robot although the model
+/// needs it, and [`Error::NoWindow`](crate::Error::NoWindow) if none is as long as a window.
 pub fn prepared(
     model: &Model,
     preparation: &Preparation,

@@ -56,7 +56,7 @@ pub enum ReachError {
         /// Time of the previous sample in s.
         previous: f64,
     },
-    /// The settings ask for Taylor models of a system with sines and cosines.
+    /// The settings select Taylor models of a system with sines and cosines.
     #[error(
         "Taylor models support only polynomials in states and inputs; \
          add sin x and cos x as states with the rates ẋ cos x and -ẋ sin x, or use linearisation"

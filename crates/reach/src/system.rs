@@ -42,8 +42,7 @@ pub trait Nonlinear: Debug + Send + Sync {
     /// Returns the derivatives of f along motions.
     fn slopes(&self) -> Box<dyn Slopes + '_>;
 
-    /// Returns the system with polynomials that flowpipes are proved with. It is made when first
-    /// asked for.
+    /// Returns the system with polynomials that flowpipes are proved with. It is made on first use.
     ///
     /// # Errors
     ///

@@ -2,7 +2,7 @@
 //! stated otherwise.
 //!
 //! The robots `ur5` and `dh6` need the shared oracle files and are skipped without them; `lwa4p` is
-//! embedded. Lanes take AVX2 where the processor has it, in a build for every x86-64 too.
+//! embedded. Lanes take AVX2 if the processor has it, in a build for every x86-64 too.
 
 #[path = "../tests/dynamics/shared.rs"]
 mod shared;

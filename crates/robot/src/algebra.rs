@@ -22,7 +22,6 @@ pub(crate) struct Sym3<S> {
     pub zz: S,
 }
 
-/// Returns a b.
 #[inline(always)]
 pub(crate) fn mul<S: Scalar>(a: &S, b: &S) -> S {
     a.clone() * b.clone()
@@ -34,13 +33,11 @@ pub(crate) fn scale<S: Scalar>(k: f64, a: &S) -> S {
     S::from(k) * a.clone()
 }
 
-/// Returns a b + c d.
 #[inline(always)]
 pub(crate) fn sum2<S: Scalar>(a: &S, b: &S, c: &S, d: &S) -> S {
     mul(a, b) + mul(c, d)
 }
 
-/// Returns a b - c d.
 #[inline(always)]
 pub(crate) fn det2<S: Scalar>(a: &S, b: &S, c: &S, d: &S) -> S {
     mul(a, b) - mul(c, d)

@@ -41,7 +41,7 @@ impl Robot {
     ///
     /// # Guarantee
     ///
-    /// Over `Interval`: an outer enclosure, which is all reals where a pivot encloses 0.
+    /// Over `Interval`: an outer enclosure, which is all reals if a pivot encloses 0.
     pub fn forward_dynamics<S: Scalar>(
         &self,
         sin: &[S],

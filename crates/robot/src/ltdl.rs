@@ -15,7 +15,7 @@ use reachtube_scalar::Scalar;
 /// # Guarantee
 ///
 /// Over `Interval`: each entry encloses the entry for every symmetric matrix in `m`, or is all
-/// reals where a pivot encloses 0.
+/// reals if a pivot encloses 0.
 ///
 /// # Examples
 ///

@@ -49,7 +49,7 @@ pub trait Dispatch {
 
 impl Dispatch for f64 {}
 
-/// Runs a kernel with AVX2 where the processor is an x86-64 that has it.
+/// Runs a kernel with AVX2 if the processor is an x86-64 that has it.
 #[inline(always)]
 pub(crate) fn vectorised<K: Kernel>(kernel: K) -> K::Output {
     Arch::new().dispatch(Vectorised(kernel))

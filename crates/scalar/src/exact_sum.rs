@@ -78,7 +78,7 @@ impl ExactSum {
         self.count
     }
 
-    /// Returns the sum, rounded to nearest, ties to even; infinite where it is beyond the largest
+    /// Returns the sum, rounded to nearest, ties to even; infinite if it is beyond the largest
     /// double.
     #[must_use]
     pub fn value(&self) -> f64 {

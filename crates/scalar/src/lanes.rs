@@ -56,7 +56,7 @@ pub trait Lanewise: Elementary + Copy {
     ///
     /// # Panics
     ///
-    /// Panics where `i` is [`LANES`](Self::LANES) or more.
+    /// Panics if `i` is [`LANES`](Self::LANES) or more.
     fn lane(self, i: usize) -> f64;
 
     /// Applies f to each lane.
@@ -126,7 +126,7 @@ impl<const N: usize> Elementary for Lanes<N> {
 
 impl<const N: usize> Powers for Lanes<N> {}
 
-/// On x86-64, kernels over lanes take AVX2 where the processor has it.
+/// On x86-64, kernels over lanes take AVX2 if the processor has it.
 impl<const N: usize> Dispatch for Lanes<N> {
     #[inline(always)]
     fn dispatch<K: Kernel>(kernel: K) -> K::Output {

@@ -43,7 +43,7 @@ const fn below(x: f64) -> f64 {
     -above(-x)
 }
 
-/// Returns (s, e) with s = round(a + b) and s + e = a + b exactly, where nothing overflows.
+/// Returns (s, e) with s = round(a + b) and s + e = a + b exactly, if nothing overflows.
 ///
 /// Knuth, The Art of Computer Programming 2, section 4.2.2, Theorem B. The theorem also holds for
 /// subnormal numbers.
@@ -99,7 +99,7 @@ pub const fn sub_down(a: f64, b: f64) -> f64 {
     add_down(a, -b)
 }
 
-/// Returns the product of a and b, one of which is zero: 0, or NaN where the other is NaN.
+/// Returns the product of a and b, one of which is zero: 0, or NaN if the other is NaN.
 const fn product_with_zero(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { 0.0 }
 }

@@ -1,4 +1,4 @@
-//! What the tests of several crates share. It is not published.
+//! Helpers that tests of several crates share. It is not published.
 
 mod tab;
 

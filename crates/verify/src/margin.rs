@@ -1,4 +1,4 @@
-//! How far a model puts a link from where the nominal motion does.
+//! Distance of a link from its place on the nominal motion.
 
 use rayon::prelude::*;
 use reachtube_conform::SuiteReach;

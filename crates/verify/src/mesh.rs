@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-/// What is wrong with a mesh, and the remedy.
+/// The problem of a mesh, and the remedy.
 pub(crate) type Problem = (String, &'static str);
 
 /// Length of the header of a binary STL file, and of each triangle after it, bytes.

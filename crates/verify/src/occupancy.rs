@@ -1,4 +1,4 @@
-//! Where the links are while the joints move within a tube.
+//! Enclosures of the links while the joints move within a tube.
 
 use rayon::prelude::*;
 use reachtube_reach::StepBounds;

@@ -59,7 +59,7 @@ impl RisingFriction {
         x[lambda] = 0.5 * (v1 + (-cubic).max(0.0)) / self.size;
     }
 
-    /// Returns weight · trace - (weight + barrier) · log det of the matrix and of λ, infinite where
+    /// Returns weight · trace - (weight + barrier) · log det of the matrix and of λ, infinite if
     /// one is not positive definite.
     pub(super) fn value(&self, x: &[f64], lambda: usize, [weight, barrier]: [f64; 2]) -> f64 {
         let matrix = self.matrix(x, x[lambda]);

@@ -63,7 +63,6 @@ impl CoulombForm {
         }
     }
 
-    /// Returns the number of columns of the regression.
     pub(super) fn columns(self) -> usize {
         self.coulomb_columns() + OTHER_COLUMNS
     }

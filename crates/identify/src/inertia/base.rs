@@ -32,7 +32,7 @@ pub(crate) struct BaseFit {
     /// Number of combinations that the recordings determine.
     pub determined: usize,
     /// Condition number: the largest over the smallest excitation of a combination, each relative
-    /// to its excitation by the reference motion. It is infinite where one is not determined.
+    /// to its excitation by the reference motion. It is infinite if one is not determined.
     pub condition: f64,
 }
 

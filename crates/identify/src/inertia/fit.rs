@@ -36,8 +36,8 @@ pub struct InertiaFit {
     pub impossible: Option<String>,
     /// Quality of the fit, one entry per joint.
     pub joints: Vec<JointFit>,
-    /// Standard errors of least squares, one per column; `None` where a column is not a combination
-    /// of its own, or the recordings do not determine it.
+    /// Standard errors of least squares, one per column; `None` if a column is not a combination of
+    /// its own, or the recordings do not determine it.
     pub standard_errors: Vec<Option<f64>>,
     /// The identifiable combinations of parameters.
     pub parameters: Vec<BaseParameter>,

@@ -195,7 +195,7 @@ fn geometric([low, high]: [f64; 2], count: usize) -> Vec<f64> {
 }
 
 /// Solves the normal equations in some columns; the other entries of the result are 0. The result
-/// is `None` where they do not determine it.
+/// is `None` if they do not determine it.
 fn solve(gram: &DMatrix<f64>, columns: &[usize]) -> Option<DVector<f64>> {
     let last = gram.ncols() - 1;
     let scale: Vec<f64> = columns.iter().map(|c| gram[(*c, *c)].sqrt()).collect();

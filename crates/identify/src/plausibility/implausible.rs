@@ -3,14 +3,14 @@ use serde::{Deserialize, Serialize};
 /// A result that is implausible.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Implausible {
-    /// What is implausible, in a sentence.
+    /// The implausible result, in a sentence.
     pub text: String,
     /// What is wrong with the columns, so that the identified values are worth nothing; `None` for
     /// results that may have other causes.
     pub columns: Option<WrongColumns>,
 }
 
-/// What is wrong with columns of recordings.
+/// Faults of the columns of recordings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongColumns {
     /// Columns of a joint have the wrong sign.

@@ -46,8 +46,8 @@ const ROUNDS: usize = 3;
 pub struct PositionOffset {
     /// Name of the joint.
     pub joint: String,
-    /// Recorded minus true position \[rad; m\]; `None` where parameters of the robot, or nothing,
-    /// have the same effect on the torque as an offset.
+    /// Recorded minus true position \[rad; m\]; `None` if parameters of the robot, or nothing, have
+    /// the same effect on the torque as an offset.
     pub offset: Option<f64>,
     /// Standard error of the offset \[rad; m\].
     pub standard_error: Option<f64>,
@@ -256,7 +256,7 @@ impl Regression {
         DVector::from_fn(self.rows.len(), |i, _| self.weights[i] * change(i))
     }
 
-    /// Estimates an offset in all recordings, or in one; `None` where the columns have the same
+    /// Estimates an offset in all recordings, or in one; `None` if the columns have the same
     /// effect.
     fn estimate(&self, effect: &DVector<f64>, log: Option<usize>) -> Option<Estimate> {
         let in_log = |i: usize| log.is_none_or(|k| self.samples.logs[k].contains(&self.rows[i]));

@@ -7,9 +7,9 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum LogEntry {
-    /// A log, or a folder with all its logs except runs.csv, in the order of their names; where it
-    /// has none, the recordings of its subfolders. A log is a CSV file, an MCAP file, a .db3 file,
-    /// or the folder of a bag.
+    /// A log, or a folder with all its logs except runs.csv, in the order of their names; if it has
+    /// none, the recordings of its subfolders. A log is a CSV file, an MCAP file, a .db3 file, or
+    /// the folder of a bag.
     Path(PathBuf),
     /// An interval of time of each of these files.
     Stretch {

@@ -1,4 +1,4 @@
-//! Velocities that lag the positions they belong to, as where a robot filters them.
+//! Velocities that lag the positions they belong to, for example because the robot filters them.
 
 use crate::prepare::derivative::derivative;
 

@@ -16,10 +16,10 @@ const SLOPE: [f64; 5] = [1.0 / 12.0, -8.0 / 12.0, 0.0, 8.0 / 12.0, -1.0 / 12.0];
 /// even times, with gains, filtered without phase shift, and without gravity and dry friction.
 ///
 /// The low-pass weighs samples before and after each one, so that an answer comes late by twice
-/// three periods of the cut-off: once for the signals, and once more for what is taken off the
-/// torques, which is computed from them. It is cut off there, where `prepare`
-/// weighs all samples; the difference is below a thousandth of a step. Nothing is allocated after
-/// the preparation was made.
+/// three periods of the cut-off: once for the signals, and once more for what is subtracted from
+/// the torques, which is computed from them. It is cut off there, where `prepare` weighs all
+/// samples; the difference is below a thousandth of a step. Nothing is allocated after the
+/// preparation was made.
 #[derive(Debug, Clone)]
 pub struct LiveLog {
     gains: Vec<f64>,
@@ -142,7 +142,7 @@ impl Rows {
     }
 }
 
-/// The low-pass, and what is taken off the torques, sample by sample.
+/// The low-pass, and what is subtracted from the torques, sample by sample.
 #[derive(Debug, Clone)]
 struct LiveFilter {
     robot: Robot,
@@ -238,7 +238,7 @@ impl LiveFilter {
         if self.off.all().is_none() {
             return false;
         }
-        // The sample in the middle of what is taken off.
+        // The sample in the middle of what is subtracted.
         self.off.weighed(0, &self.weights, &mut self.taken_off);
         let Some(row) = self.filtered.all().map(|rows| &rows[..4 * n]) else { return false };
         sample.values.copy_from_slice(&row[..3 * n]);

@@ -18,9 +18,9 @@ pub struct PreparedLog {
     pub qdd: Vec<f64>,
     /// Torques \[N m\] after the gains, row-major K x n.
     pub tau: Vec<f64>,
-    /// Temperatures of the joints \[°C\], row-major K x n; empty where none were recorded.
+    /// Temperatures of the joints \[°C\], row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
-    /// Number of the recording since the robot's start, from 1, where it is known.
+    /// Number of the recording since the robot's start, from 1, if it is known.
     pub order: Option<u64>,
     /// Least speed of each joint about each sample \[rad/s\], row-major K x n, for a log that was
     /// thinned; else empty.

@@ -37,11 +37,11 @@ pub struct Prepared {
 /// ends, where the filter extrapolates, are cut by 2.5 periods of the cut-off.
 ///
 /// `compensated` takes gravity and dry friction of this robot off the torques, which are then the
-/// input u of (11). Near standstill, friction holds a joint
-/// ([`Robot::input_from_holding_torque`]). What is taken off is filtered as the torques are: where
-/// a joint turns, friction steps, and the filtered torque does not. An input that is computed from
-/// filtered torques misses up to twice the friction about every turn. To torques that were measured
-/// behind the gear, what the motors' inertia takes is added ([`PrepareSettings::torque`]).
+/// input u of (11). Near standstill, friction holds a joint ([`Robot::input_from_holding_torque`]).
+/// What is subtracted is filtered as the torques are: where a joint turns, friction steps, and the
+/// filtered torque does not. An input that is computed from filtered torques misses up to twice the
+/// friction about every turn. To torques that were measured behind the gear, what the motors'
+/// inertia takes is added ([`PrepareSettings::torque`]).
 ///
 /// # Errors
 ///
@@ -105,7 +105,7 @@ pub fn unfiltered(raw: &RawLog, gains: &[f64]) -> Result<PreparedLog> {
     Ok(log)
 }
 
-/// Describes what was taken off the torques.
+/// Describes what was subtracted from the torques.
 fn compensation(robot: &Robot) -> String {
     let has_friction = |joint: &Joint| {
         joint.friction.coulomb != Coulomb::default() || joint.friction.stribeck.is_some()

@@ -15,13 +15,13 @@ pub struct RawLog {
     pub file: PathBuf,
     /// The motion that it shows, where the log or an index names it.
     pub motion: Option<String>,
-    /// Number of the recording since the robot's start, from 1, where it is known.
+    /// Number of the recording since the robot's start, from 1, if it is known.
     pub order: Option<u64>,
     /// The samples.
     pub run: Run,
-    /// What was changed or is worth a look, one sentence each.
+    /// Notes for the user about changes and oddities, one sentence each.
     pub notes: Vec<String>,
-    /// What contradicts other recordings, one sentence each: positions that are whole turns away,
+    /// Contradictions to other recordings, one sentence each: positions that are whole turns away,
     /// and were moved.
     pub moved: Vec<String>,
 }

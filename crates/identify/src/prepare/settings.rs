@@ -24,16 +24,16 @@ pub struct PrepareSettings {
     /// By default it is 1.9 times the usual time at a fixed rate, and 10 times the usual time where
     /// the sample times jitter.
     pub max_gap: Option<f64>,
-    /// What the recorded torques are where they are compensated; motor torques by default.
+    /// The kind of the recorded torques if they are compensated; motor torques by default.
     ///
     /// Torques behind the gear, `link`, do not drive the motors' inertia. What it takes, J q̈ with
     /// the acceleration of the filtered velocity, is added to the input.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<Torque>,
-    /// Columns of recordings as robots and drivers log them, where their names do not tell.
+    /// Columns of recordings as robots and drivers log them, if their names are ambiguous.
     #[serde(skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,
-    /// What to read from logs in MCAP and rosbag2, where they do not tell.
+    /// Topics, joints and times of MCAP and rosbag2 logs, if the logs are ambiguous.
     #[serde(skip_serializing_if = "is_default")]
     pub log: LogSettings,
 }

@@ -87,7 +87,7 @@ impl<'a> Signals<'a> {
     }
 }
 
-/// Returns the robot with the friction that it has at sample `k`, as far as the log knows it.
+/// Returns the robot with the friction that it has at sample `k`, if the log has it.
 fn warm_robot<'a>(robot: &'a Robot, log: &PreparedLog, k: usize) -> Cow<'a, Robot> {
     if robot.warms_by().is_empty() {
         return Cow::Borrowed(robot);

@@ -92,7 +92,7 @@ fn simulate_windows(robot: &Robot, logs: &[&PreparedLog], duration: f64) -> Wind
 /// Returns the simulated minus the recorded state at the end of each of some windows of one length
 /// in one log, 2n entries.
 ///
-/// The result is `None` where the simulation diverged.
+/// The result is `None` if the simulation diverged.
 fn window_errors(
     robot: &Robot,
     windows: &[(&PreparedLog, usize, usize)],

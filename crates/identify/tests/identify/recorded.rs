@@ -1,7 +1,7 @@
 //! Identification of real robots: errors of the predicted torque in validation recordings.
 //!
 //! The recordings are expected in `../shared/data` beside the repository. The tests are ignored
-//! unless asked for.
+//! unless requested.
 
 use reachtube_identify::{Identification, IdentifySettings, JointError, identify};
 use reachtube_robot::{ParameterKind, Robot};

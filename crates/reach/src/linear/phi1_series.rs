@@ -31,7 +31,7 @@ pub(crate) fn phi1_series(x: &IntervalMatrix, connected: &DMatrix<bool>) -> Inte
 /// Returns a degree p for the truncated series and an upper bound of its truncation error,
 /// Σ_{i>p} xⁱ/(i+1)! <= x^{p+1}/(p+2)! / (1 - x/(p+3)) for x = `norm` < p + 3.
 ///
-/// The bound is infinite where 60 terms are not enough for double precision.
+/// The bound is infinite if 60 terms are not enough for double precision.
 pub(crate) fn truncation(norm: f64) -> (usize, f64) {
     let mut term = div_up(norm, 2.0);
     for degree in 1..60 {

@@ -173,7 +173,7 @@ impl<'a> SampleGenerators<'a> {
             let integral = self.propagation.integral(steps).clone();
             return UnitGenerators::new(states, inputs, std::iter::once(integral));
         }
-        // From the last step back to the first, so that each product goes on from the one before.
+        // From the last step back to the first, so that each product continues from the one before.
         let backward: Vec<PropagationStep> =
             (0..steps).rev().map(|j| self.propagation.step(j).clone()).collect();
         let within = bound_within_step(system, self.propagation.grid().longest_step());

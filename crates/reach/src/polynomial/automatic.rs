@@ -38,7 +38,7 @@ const FAR: f64 = 0.6;
 /// A flowpipe and the choice that gave it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AutomaticFlowpipe {
-    /// The flowpipe on the grid that was asked for.
+    /// The flowpipe on the grid that was requested.
     pub flowpipe: Flowpipe,
     /// The settings that were chosen.
     pub settings: FlowpipeSettings,

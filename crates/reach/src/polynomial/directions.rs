@@ -96,7 +96,7 @@ pub(crate) fn directions(
 struct DirectionBasis {
     /// The directions; the largest entry of each is 1.
     columns: Vec<Vec<f64>>,
-    /// Matrix from a column to its coordinates, where a column may combine several directions.
+    /// Matrix from a column to its coordinates, if a column may combine several directions.
     inverse: Option<DMatrix<f64>>,
     /// Largest error of an entry.
     tolerance: f64,

@@ -28,7 +28,7 @@ pub enum FlowpipeOutcome {
         time: f64,
         /// State whose tube grew the most over the failed step.
         state: usize,
-        /// Widths of the last tube, N entries; infinite where it has no bound.
+        /// Widths of the last tube, N entries; infinite if it has no bound.
         widths: Vec<f64>,
     },
 }
@@ -146,7 +146,7 @@ impl Flowpipe {
         flowpipe.record_sample(propagator, visit);
         let mut u = vec![Interval::ZERO; system.inputs()];
         for k in 1..grid.len() {
-            // One step under all inputs of the step; stop where no enclosure is verified.
+            // One step under all inputs of the step; stop if no enclosure is verified.
             input.over_step(k - 1, &mut u);
             let advanced = propagator.advance(grid.interval(k - 1), &u);
             if let Err(StepFailure { state, widths }) = advanced {
@@ -268,7 +268,6 @@ fn propagator<'a>(
     })
 }
 
-/// Returns side i of the set of initial states.
 pub(crate) fn side(start: &[f64], initial_set: &Hyperrectangle, i: usize) -> Interval {
     Interval::point(start[i]) + Interval::centred(initial_set.centre[i], initial_set.radius[i])
 }

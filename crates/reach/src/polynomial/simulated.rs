@@ -18,7 +18,7 @@ const MOST_VARIABLES: usize = 120;
 
 type Eight = Lanes<8>;
 
-/// What simulated solutions from vertices of the initial set show about a system.
+/// Properties of a system from simulated solutions that start at vertices of the initial set.
 pub(crate) struct Simulated {
     /// Widths at each sample, N for each.
     widths: Vec<f64>,
@@ -127,8 +127,8 @@ impl Trace {
     }
 }
 
-/// Returns vertex `run` of a box. The vertices halve along each side, and are all vertices where
-/// there are no more than runs.
+/// Returns vertex `run` of a box. The vertices halve along each side, and are all vertices if there
+/// are no more than runs.
 fn vertex(sides: &[Interval], run: usize) -> Vec<f64> {
     let mut uncertain = 0..;
     let end = |side: &Interval| {

@@ -19,7 +19,6 @@ pub(crate) fn points(values: &[f64]) -> Vec<Interval> {
     values.iter().map(|&x| Interval::point(x)).collect()
 }
 
-/// Returns the midpoint of each entry.
 pub(crate) fn midpoint(matrix: &IntervalMatrix) -> DMatrix<f64> {
     matrix.map(|x| x.mid())
 }

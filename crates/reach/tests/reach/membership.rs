@@ -114,10 +114,10 @@ fn a_set_without_width_in_a_state_has_no_proof() {
     assert!(MembershipProof::new(&set).is_none());
 }
 
-/// Tells `count` sampled states from states that no motion reaches, at one sample of the arm's
-/// reachable set: states of random motions are proved to lie in the set, and for random states of
-/// its hull either the factors are a motion or the direction is one that no motion passes, as
-/// single steps of the system show.
+/// Distinguishes `count` sampled states from states that no motion reaches, at one sample of the
+/// arm's reachable set: states of random motions are proved to lie in the set, and for random
+/// states of its hull either the factors are a motion or the direction is one that no motion
+/// passes, as single steps of the system show.
 fn tell_apart(count: usize) {
     let (system, h, k) = (arm(), 0.004, 150);
     let (n, m) = (system.states(), system.inputs());

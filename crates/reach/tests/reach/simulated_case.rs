@@ -70,7 +70,7 @@ pub(crate) const SLACK: f64 = 1e-7;
 impl Case {
     /// Simulates `runs` behaviours and fails where a state leaves the sets, at samples or between.
     ///
-    /// Returns the largest ratio of the simulated width to the width of the set at the end, 0 where
+    /// Returns the largest ratio of the simulated width to the width of the set at the end, 0 if
     /// the flowpipe gave up in its first step.
     pub(crate) fn simulate(&self, runs: usize, seed: u64) -> f64 {
         let mut random = Random::new(seed);

@@ -1,4 +1,4 @@
-//! What a tool computes from an exported model, and where it differs from the model.
+//! The set that a tool computes from an exported model, and its difference from the model's.
 
 use reachtube_files::{MARK, TOOL};
 use reachtube_reach::Disturbance;
@@ -6,13 +6,13 @@ use reachtube_reach::Disturbance;
 use super::case::ExportCase;
 use super::{InputForm, Tool};
 
-/// What a tool computes from an export.
+/// The meaning of an export in its tool.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Meaning {
     /// Paragraphs, which are the first lines of each file.
     pub paragraphs: Vec<String>,
-    /// Whether the tool knows fewer disturbances or inputs than the model, so that its set need not
-    /// contain the model's.
+    /// Whether the tool supports fewer disturbances or inputs than the model, so that its set need
+    /// not contain the model's.
     pub may_be_smaller: bool,
 }
 
@@ -22,7 +22,7 @@ itself. The tool does not know that s^2 + c^2 = 1, nor that they belong to an an
 const ABOUT_NOISE: &str = "The model has a noise set V of the sensors, which is not part of this \
 file: add it to the tool's set before recordings are compared with it.";
 
-/// The disturbances that a tool knows.
+/// The disturbances that a tool supports.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 enum Known {
     Constant,

@@ -17,7 +17,7 @@ pub struct System {
     pub inputs: Vec<String>,
     /// The derivative of each state, N.
     pub rates: Vec<Polynomial>,
-    /// A, B and d where the model is affine; the states are then q and q̇.
+    /// A, B and d if the model is affine; the states are then q and q̇.
     pub linear: Option<LinearSystem>,
     /// Kinds of the joints, n.
     pub kinds: Vec<JointKind>,
@@ -46,7 +46,7 @@ pub struct Term {
 pub struct Factor {
     /// Index of the variable: the states, then the inputs.
     pub variable: usize,
-    /// What the variable is an offset from; often 0.
+    /// The origin of the variable, often 0.
     pub origin: f64,
     /// The exponent, 1 or more.
     pub power: u8,

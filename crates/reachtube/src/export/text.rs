@@ -82,7 +82,7 @@ fn factor(factor: &Factor, name: &dyn Fn(usize) -> String) -> String {
     text
 }
 
-/// Returns a sum on lines of its own, each ended by `end`; "0.0" where there are no terms.
+/// Returns a sum on lines of its own, each ended by `end`; "0.0" if there are no terms.
 pub(super) fn sum(terms: &[String], end: &str) -> String {
     if terms.is_empty() {
         return "0.0".into();

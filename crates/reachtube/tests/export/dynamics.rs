@@ -103,7 +103,7 @@ fn cora(case: &ExportCase) {
     assert_eq!(rates, case.system.rates);
 }
 
-/// Tells whether a file says what is computed: tables and what only compares do not.
+/// Returns whether a file says what is computed: tables and what only compares do not.
 fn has_head(name: &str) -> bool {
     !name.ends_with(".csv") && name != "cora_compare.m"
 }

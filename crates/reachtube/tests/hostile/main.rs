@@ -95,7 +95,7 @@ fn try_files(count: u64, folder: &Path) {
     try_file("abstraction.json", seeds::abstractions(), &|path| drop(PolynomialModel::load(path)));
 }
 
-/// Returns the most memory that the process has reserved, bytes; 0 where that is not known.
+/// Returns the most memory that the process has reserved, bytes; 0 if that is not known.
 fn reserved_memory() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let peak = status.lines().find_map(|line| line.strip_prefix("VmPeak:"));

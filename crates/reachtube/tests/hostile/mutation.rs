@@ -113,7 +113,7 @@ fn input(seeds: &[Vec<u8>], case: u64) -> Vec<u8> {
 struct Random(Xoshiro256PlusPlus);
 
 impl Random {
-    /// Returns a number from 0 to `count` - 1; 0 where `count` is 0.
+    /// Returns a number from 0 to `count` - 1; 0 if `count` is 0.
     fn below(&mut self, count: usize) -> usize {
         if count == 0 { 0 } else { self.0.random_range(0..count) }
     }

@@ -107,8 +107,7 @@ pub struct FrictionDescription {
     pub fitted_velocities: Option<[f64; 2]>,
 }
 
-/// Standard errors of identified friction, in the units of the coefficients; 0 where one is
-/// unknown.
+/// Standard errors of identified friction, in the units of the coefficients; 0 if one is unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionErrors {

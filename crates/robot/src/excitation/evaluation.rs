@@ -62,7 +62,6 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Returns the quality of the motion.
     pub(super) fn quality(&mut self, space: &SearchSpace, x: &[f64]) -> Quality {
         self.stack(space, x);
         Quality { log_determinant: self.log_determinant(), condition: self.condition() }

@@ -18,7 +18,6 @@ pub(super) struct EvolutionResult {
     pub value: f64,
 }
 
-/// Returns the number k of a search and its random numbers.
 pub(super) fn search_start(seed: u64, k: usize) -> (u64, Random) {
     let seed = seed.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(k as u64);
     (k as u64, Random::new(seed))

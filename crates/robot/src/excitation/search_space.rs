@@ -84,7 +84,6 @@ impl SearchSpace {
         }
     }
 
-    /// Returns the number of grid points.
     pub(super) fn points(&self) -> usize {
         self.circle.len()
     }

@@ -99,8 +99,8 @@ impl Coulomb {
     }
 
     /// Returns the magnitude of the torque \[N m\] at no load, in the mean over the quadrants; it
-    /// is negative where it drives. A torque that is the same in both directions does not count:
-    /// an identification takes up constant torques so.
+    /// is negative if it drives. A torque that is the same in both directions does not count: an
+    /// identification takes up constant torques so.
     pub(crate) fn magnitude_at_no_load(&self) -> f64 {
         let forward = self.driving_forward.offset + self.braking_forward.offset;
         let backward = self.driving_backward.offset + self.braking_backward.offset;

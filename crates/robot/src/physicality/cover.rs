@@ -57,7 +57,7 @@ impl Robot {
     /// This is for robots whose links alone are no proof ([`Robot::check_physical`]), such as
     /// robots with base parameters. The proof is a branch and bound with interval arithmetic over
     /// boxes of positions; boxes that are too wide are bisected. Returns the number of boxes, or
-    /// `None` if more than `most_boxes` would be needed, which implies nothing about M. The LWA 4P
+    /// `None` if more than `most_boxes` would be needed, which is no statement about M. The LWA 4P
     /// takes about 45,000 boxes and 2 s.
     ///
     /// # Guarantee

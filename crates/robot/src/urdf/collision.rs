@@ -43,7 +43,7 @@ pub enum Shape {
     Mesh {
         /// The file, as the URDF writes it.
         file: String,
-        /// Factors of the file's coordinates x, y and z; 1 where the URDF has none.
+        /// Factors of the file's coordinates x, y and z; 1 if the URDF has none.
         scale: [f64; 3],
     },
 }

@@ -46,7 +46,6 @@ pub(super) fn parse_document<'a>(text: &'a str, origin: &str) -> Result<Document
     })
 }
 
-/// Returns the child elements with a tag.
 pub(super) fn elements<'a>(node: Node<'a, 'a>, tag: &str) -> impl Iterator<Item = Node<'a, 'a>> {
     node.children().filter(move |n| n.is_element() && n.tag_name().name() == tag)
 }
@@ -169,7 +168,6 @@ impl<'a> UrdfTree<'a> {
         element(node, tag).ok_or_else(|| self.error(node, format!("<{tag}> is missing"), "add it"))
     }
 
-    /// Returns the text of an attribute.
     pub(super) fn attribute(&self, node: Node<'a, 'a>, name: &str) -> Result<&'a str, RobotError> {
         node.attribute(name)
             .ok_or_else(|| self.error(node, format!("the attribute `{name}` is missing"), "add it"))

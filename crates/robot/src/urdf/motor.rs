@@ -34,7 +34,6 @@ impl<'a> UrdfTree<'a> {
         Ok((ratio.or(rotor.map(|_| 1.0)), rotor))
     }
 
-    /// Returns the number in an element.
     fn value(&self, node: Node<'a, 'a>) -> Result<f64, RobotError> {
         let text = node.attribute("value").or(node.text()).unwrap_or("");
         self.to_number(node, node.tag_name().name(), text)

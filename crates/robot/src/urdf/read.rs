@@ -10,7 +10,7 @@ use crate::robot::Robot;
 use crate::text_file::read_text;
 use std::path::Path;
 
-/// What is read from a URDF: the ends of the chain, and the joints that do not move.
+/// Options for reading a URDF: the ends of the chain, and the joints that do not move.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UrdfOptions {
     /// Link that does not move; the default is the root.

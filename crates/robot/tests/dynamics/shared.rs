@@ -9,7 +9,7 @@ use serde_json::Value;
 /// The folder of reference values, beside the repository.
 pub(crate) const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/");
 
-/// Reads a JSON file of the shared folder. Tests that need one are ignored unless asked for.
+/// Reads a JSON file of the shared folder. Tests that need one are ignored unless requested.
 pub(crate) fn oracle(path: &str) -> Value {
     let text = std::fs::read_to_string(format!("{FOLDER}{path}"));
     serde_json::from_str(&text.unwrap_or_else(|error| panic!("{path}: {error}"))).unwrap()

@@ -47,7 +47,7 @@ impl Mul for Interval {
 }
 
 impl Interval {
-    /// Encloses the product where an end is zero or infinite, or where a product may underflow.
+    /// Encloses the product if an end is zero or infinite, or if a product may underflow.
     pub(super) fn mul_with_zero_or_infinity(self, rhs: Interval) -> Interval {
         // Exact zeros abound in the geometry of robots; 0 · ∞ is left to the general case.
         let zero = |x: Interval| x.lo == 0.0 && x.hi == 0.0;
@@ -77,7 +77,7 @@ impl Interval {
 
 impl Div for Interval {
     type Output = Interval;
-    /// Encloses the quotient; it is [`Interval::ENTIRE`] where the divisor contains zero.
+    /// Encloses the quotient; it is [`Interval::ENTIRE`] if the divisor contains zero.
     #[inline]
     fn div(self, rhs: Interval) -> Interval {
         if rhs.lo > 0.0 {
@@ -143,7 +143,7 @@ impl One for Interval {
     }
 }
 
-/// On x86-64, kernels over intervals take AVX2 where the processor has it.
+/// On x86-64, kernels over intervals take AVX2 if the processor has it.
 impl Dispatch for Interval {
     #[inline(always)]
     fn dispatch<K: Kernel>(kernel: K) -> K::Output {

@@ -36,8 +36,8 @@ impl Interval {
     /// The number 1.
     pub const ONE: Interval = Interval { lo: 1.0, hi: 1.0 };
 
-    /// Returns [lo, hi], or `None` where it contains no real number: where an end is NaN, lo > hi,
-    /// lo = +∞ or hi = -∞.
+    /// Returns [lo, hi], or `None` if it contains no real number: if an end is NaN, lo > hi, lo =
+    /// +∞ or hi = -∞.
     ///
     /// ```
     /// use reachtube_scalar::Interval;
@@ -177,7 +177,7 @@ impl Interval {
         Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// Returns the intersection of both, exactly; `None` where it is empty.
+    /// Returns the intersection of both, exactly; `None` if it is empty.
     #[inline]
     #[must_use]
     pub const fn intersection(self, other: Interval) -> Option<Interval> {

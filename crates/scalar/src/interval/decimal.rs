@@ -27,7 +27,7 @@ impl Interval {
     /// numbers.
     ///
     /// # Errors
-    /// `DecimalError` where the text is not a decimal number. Infinities and NaN are errors.
+    /// `DecimalError` if the text is not a decimal number. Infinities and NaN are errors.
     ///
     /// ```
     /// use reachtube_scalar::Interval;

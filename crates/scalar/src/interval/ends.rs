@@ -103,7 +103,7 @@ mod side_by_side {
         interval(v._mm_castsi128_pd(v._mm_add_epi64(v._mm_castpd_si128(s), step)))
     }
 
-    /// Encloses the product; `None` where an end is zero or infinite, or where it may underflow.
+    /// Encloses the product; `None` if an end is zero or infinite, or where it may underflow.
     #[inline(always)]
     pub(in crate::interval) fn product(x: Interval, y: Interval) -> Option<Interval> {
         let v = sse2();
@@ -148,7 +148,7 @@ mod one_by_one {
         Interval { lo: add_down(x.lo, y.lo), hi: add_up(x.hi, y.hi) }
     }
 
-    /// Encloses the product; `None` where an end is zero or infinite, or where it may underflow.
+    /// Encloses the product; `None` if an end is zero or infinite, or where it may underflow.
     #[inline]
     pub(in crate::interval) fn product(x: Interval, y: Interval) -> Option<Interval> {
         let (lo, hi) = rounded_product(x, y);

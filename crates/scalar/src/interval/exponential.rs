@@ -33,7 +33,7 @@ impl Interval {
     ///
     /// # Guarantee
     /// Outer, for every x; exact at 0. In every test, each end is within 1 ulp of the tightest
-    /// interval. The upper end is infinite where e^x overflows, the lower end is 0 where it
+    /// interval. The upper end is infinite if e^x overflows, the lower end is 0 where it
     /// underflows.
     ///
     /// ```

@@ -3,8 +3,8 @@
 use super::closed::Interval;
 
 impl Interval {
-    /// Encloses {ln x} over the positive x of the interval; it is [`ENTIRE`](Self::ENTIRE) where
-    /// there are none.
+    /// Encloses {ln x} over the positive x of the interval; it is [`ENTIRE`](Self::ENTIRE) if there
+    /// are none.
     ///
     /// It corrects the guess of the platform's `ln` by [`exp`](Self::exp).
     ///

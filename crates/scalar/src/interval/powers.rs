@@ -69,7 +69,7 @@ impl Interval {
         Interval { lo: power_of(self.lo, n).lo, hi: power_of(self.hi, n).hi }
     }
 
-    /// Encloses {√x} over the numbers x ≥ 0 of the interval; it is [`ENTIRE`](Self::ENTIRE) where
+    /// Encloses {√x} over the numbers x ≥ 0 of the interval; it is [`ENTIRE`](Self::ENTIRE) if
     /// there are none.
     ///
     /// # Guarantee
@@ -89,7 +89,7 @@ impl Interval {
         Interval { lo: sqrt_down(self.lo.max(0.0)), hi: sqrt_up(self.hi) }
     }
 
-    /// Encloses {1 / x}; it is [`ENTIRE`](Self::ENTIRE) where the interval contains zero.
+    /// Encloses {1 / x}; it is [`ENTIRE`](Self::ENTIRE) if the interval contains zero.
     ///
     /// # Guarantee
     /// Outer, with the rounding of the division.

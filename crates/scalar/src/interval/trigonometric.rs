@@ -110,12 +110,12 @@ impl ReducedAngle {
     }
 }
 
-/// Returns the leading 26 bits of x, whose square is exact; 0 where the square might underflow.
+/// Returns the leading 26 bits of x, whose square is exact; 0 if the square might underflow.
 fn leading_bits(x: f64) -> f64 {
     if x.abs() < 1e-9 { 0.0 } else { f64::from_bits(x.to_bits() >> 27 << 27) }
 }
 
-/// Reduces both ends of an interval; `None` where an end is beyond [`LARGEST_ANGLE`].
+/// Reduces both ends of an interval; `None` if an end is beyond [`LARGEST_ANGLE`].
 fn reduce(x: Interval) -> Option<[ReducedAngle; 2]> {
     if x.mag() > LARGEST_ANGLE {
         return None;

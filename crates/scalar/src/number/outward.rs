@@ -109,7 +109,6 @@ pub fn two_digits_outward((low, high): (f64, f64)) -> String {
     format!("[{low}, {high}]")
 }
 
-/// Returns the number of decimals that shows two digits of a number.
 fn decimals_of_two_digits(size: f64) -> usize {
     (1.0 - size.log10().floor()).clamp(0.0, 6.0) as usize
 }

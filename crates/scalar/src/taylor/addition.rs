@@ -1,10 +1,9 @@
-//! How coefficients are added: plainly, or while something is recorded about each sum.
+//! Rounding of sums of coefficients: plainly, or while something is recorded about each sum.
 
 use crate::scalar::Scalar;
 
 /// An addition of coefficients.
 pub(crate) trait Addition<C: Scalar> {
-    /// Returns a + b.
     fn sum(&mut self, a: &C, b: C) -> C;
 
     /// Replaces each a_i by a_i + b_i, or by a_i - b_i where `minus`.

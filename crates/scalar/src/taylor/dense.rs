@@ -33,8 +33,8 @@ impl<'a, C: Scalar> DenseSeries<'a, C> {
         Self { space, coefficients, zero_blocks: [0; 4] }
     }
 
-    /// Returns the block of one degree. It is empty where the block is known to be zero or lies
-    /// above the last stored degree.
+    /// Returns the block of one degree. It is empty if the block is known to be zero or lies above
+    /// the last stored degree.
     #[inline(always)]
     pub(super) fn block(&self, degree: u32) -> &'a [C] {
         let known_zero = self.zero_blocks[degree as usize / 64] >> (degree % 64) & 1 == 1;

@@ -38,8 +38,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         Self::dense(&space, quotient)
     }
 
-    /// Returns the truncated series of 1 / self. Coefficients are infinite or NaN where self is
-    /// zero at the expansion point.
+    /// Returns the truncated series of 1 / self. Coefficients are infinite or NaN if self is zero
+    /// at the expansion point.
     pub fn recip(&self) -> Self {
         Self::from(1.0).quotient(self)
     }
@@ -61,7 +61,7 @@ impl<C: Scalar> Div for TaylorPolynomial<C> {
 }
 
 impl<C: Scalar> DivAssign for TaylorPolynomial<C> {
-    /// Divides as a truncated series. Coefficients are infinite or NaN where the divisor is zero at
+    /// Divides as a truncated series. Coefficients are infinite or NaN if the divisor is zero at
     /// the expansion point.
     fn div_assign(&mut self, rhs: Self) {
         *self = self.quotient(&rhs);

@@ -48,7 +48,7 @@ const SUMS: usize = 2;
 struct MonomialGroup<C> {
     /// Increasing numbers of the monomials that occur in one of the components.
     monomials: Vec<u32>,
-    /// Coefficients of each monomial, one per component; 0 where it does not occur.
+    /// Coefficients of each monomial, one per component; 0 if it does not occur.
     coefficients: Vec<[C; GROUP]>,
 }
 
@@ -74,7 +74,7 @@ impl<C: Scalar> PolynomialMap<C> {
     ///
     /// # Panics
     ///
-    /// Panics where a component belongs to a space with another number of variables.
+    /// Panics if a component belongs to a space with another number of variables.
     pub fn new(variables: usize, components: &[TaylorPolynomial<C>]) -> Self {
         let mut packing = Packing::new(variables).expect("1 to 120 variables");
         let mut constants = vec![C::zero(); components.len()];
@@ -152,7 +152,7 @@ impl<C: Scalar> PolynomialMap<C> {
     ///
     /// # Panics
     ///
-    /// Panics where `at` or `out` has another length, or the workspace belongs to another map.
+    /// Panics if `at` or `out` has another length, or the workspace belongs to another map.
     pub fn evaluate_into<T: Scalar + From<C> + Powers>(
         &self,
         at: &[T],

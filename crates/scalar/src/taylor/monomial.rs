@@ -25,7 +25,6 @@ impl Packing {
         })
     }
 
-    /// Returns the largest exponent that fits.
     pub(crate) fn largest_exponent(self) -> u32 {
         (1 << self.bits) - 1
     }
@@ -35,12 +34,10 @@ impl Packing {
         1 << DEGREE_SHIFT | 1 << (self.bits * i as u32)
     }
 
-    /// Returns the total degree of a monomial.
     pub(crate) fn degree(self, monomial: u128) -> u32 {
         (monomial >> DEGREE_SHIFT) as u32
     }
 
-    /// Returns the exponent of variable i in a monomial.
     pub(crate) fn exponent(self, monomial: u128, i: usize) -> u32 {
         (monomial >> (self.bits * i as u32)) as u32 & self.largest_exponent()
     }

@@ -66,7 +66,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
     ///
     /// # Panics
     ///
-    /// Panics where the space has no variable i.
+    /// Panics if the space has no variable i.
     pub fn variable(space: &Arc<TaylorSpace>, i: usize) -> Self {
         Self::variable_at(space, i, C::zero())
     }
@@ -75,7 +75,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
     ///
     /// # Panics
     ///
-    /// Panics where the space has no variable i.
+    /// Panics if the space has no variable i.
     pub fn variable_at(space: &Arc<TaylorSpace>, i: usize, value: C) -> Self {
         let variables = space.variables();
         assert!(i < variables, "variable {i} of a Taylor space with {variables} variables");
@@ -105,7 +105,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
     ///
     /// # Panics
     ///
-    /// Panics where a term does not have one exponent per variable.
+    /// Panics if a term does not have one exponent per variable.
     pub fn from_terms(
         space: &Arc<TaylorSpace>,
         terms: impl IntoIterator<Item = TaylorTerm<C>>,
@@ -208,8 +208,8 @@ impl<C: Scalar> TaylorPolynomial<C> {
         degree
     }
 
-    /// Returns the coefficient of the monomial with the given exponents, one per variable; zero
-    /// where there is no such term.
+    /// Returns the coefficient of the monomial with the given exponents, one per variable; zero if
+    /// there is no such term.
     pub fn coefficient(&self, exponents: &[u8]) -> C {
         let Some(space) = self.space() else {
             return if exponents.iter().all(|e| *e == 0) {

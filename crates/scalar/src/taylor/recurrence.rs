@@ -25,7 +25,6 @@ impl<C: Scalar> PartialSeries<C> {
         Self { coefficients }
     }
 
-    /// Returns the constant coefficient.
     pub(super) fn constant(&self) -> &C {
         &self.coefficients[0]
     }
@@ -52,11 +51,11 @@ impl<C: Scalar> PartialSeries<C> {
     }
 }
 
-/// Returns the space of two operands; `None` where both are constants.
+/// Returns the space of two operands; `None` if both are constants.
 ///
 /// # Panics
 ///
-/// Panics where a dense series of the space does not fit.
+/// Panics if a dense series of the space does not fit.
 pub(super) fn dense_space<C: Scalar>(
     x: &TaylorPolynomial<C>,
     y: &TaylorPolynomial<C>,
@@ -68,7 +67,6 @@ pub(super) fn dense_space<C: Scalar>(
     Some(Arc::clone(space))
 }
 
-/// Returns a block of zeros for degree d.
 pub(super) fn zero_block<C: Scalar>(space: &TaylorSpace, d: u32) -> Vec<C> {
     vec![C::zero(); space.block(d).len()]
 }

@@ -37,7 +37,7 @@ pub struct TaylorSpace {
     order: u32,
     pub(crate) packing: Packing,
     /// Start of the block of each degree in a dense series, then its length (p + 2 entries). Empty
-    /// where no dense series fits.
+    /// if no dense series fits.
     offsets: Vec<usize>,
     factors: Vec<OnceLock<Box<[u8]>>>,
     product_tables: Vec<OnceLock<Box<[u32]>>>,
@@ -82,12 +82,12 @@ pub enum TaylorSpaceError {
         coefficients: u128,
         /// Memory for the series and its product tables, in bytes.
         memory: u128,
-        /// The highest order that fits, 0 where none does.
+        /// The highest order that fits, 0 if none does.
         max_order: u32,
     },
 }
 
-/// Says what to change so that a dense series fits.
+/// Returns the change after which a dense series fits.
 fn remedy(max_order: u32) -> String {
     if max_order == 0 { "use fewer variables".into() } else { format!("order {max_order} fits") }
 }
@@ -127,7 +127,6 @@ fn dense_size(variables: usize, order: u32) -> (u128, u128) {
     (coefficients, entries)
 }
 
-/// Returns whether a dense series fits.
 fn dense_fits(variables: usize, order: u32) -> bool {
     let (coefficients, entries) = dense_size(variables, order);
     coefficients <= MAX_COEFFICIENTS && entries <= MAX_TABLE_ENTRIES
@@ -141,9 +140,9 @@ impl TaylorSpace {
     ///
     /// # Errors
     ///
-    /// - [`TaylorSpaceError::Variables`] where `variables` is 0 or above 120.
-    /// - [`TaylorSpaceError::Exponents`] where the exponents of a monomial do not fit into 120
-    ///   bits. The highest order is 15 for 28 variables, 31 for 24, and 255 for 15 or fewer.
+    /// - [`TaylorSpaceError::Variables`] if `variables` is 0 or above 120.
+    /// - [`TaylorSpaceError::Exponents`] if the exponents of a monomial do not fit into 120 bits.
+    ///   The highest order is 15 for 28 variables, 31 for 24, and 255 for 15 or fewer.
     pub fn new(variables: usize, order: u32) -> Result<Arc<Self>, TaylorSpaceError> {
         let packing = Packing::new(variables).ok_or(TaylorSpaceError::Variables { variables })?;
         let max_order = packing.largest_exponent();

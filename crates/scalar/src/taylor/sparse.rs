@@ -126,13 +126,11 @@ pub(crate) fn collect_like_terms<C: Scalar>(mut terms: Vec<Term<C>>) -> Vec<Term
     terms
 }
 
-/// Returns the terms times k.
 pub(super) fn scaled<C: Scalar>(terms: &[Term<C>], k: &C) -> Vec<Term<C>> {
     let products = terms.iter().map(|(m, c)| (*m, c.clone() * k.clone()));
     products.filter(|(_, c)| !c.is_zero()).collect()
 }
 
-/// Returns the list of terms of a constant.
 pub(super) fn constant<C: Scalar>(c: &C) -> Vec<Term<C>> {
     if c.is_zero() { Vec::new() } else { vec![(0, c.clone())] }
 }

@@ -22,7 +22,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
     ///
     /// # Panics
     ///
-    /// Panics where a variable occurs for which `at` has no entry.
+    /// Panics if a variable occurs for which `at` has no entry.
     pub fn evaluate<T: Scalar + From<C>>(&self, at: &[T]) -> T {
         let Some(space) = self.space() else { return T::from(self.constant_term()) };
         let mut terms = self.packed_terms();
@@ -57,7 +57,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
     ///
     /// # Panics
     ///
-    /// Panics where `h` does not have one entry per variable.
+    /// Panics if `h` does not have one entry per variable.
     pub fn shifted(&self, h: &[C]) -> Self {
         let Some(space) = self.space().cloned() else { return self.clone() };
         assert_eq!(h.len(), space.variables(), "a shift needs one offset per variable");
@@ -73,7 +73,7 @@ impl<C: Scalar> TaylorPolynomial<C> {
     ///
     /// # Panics
     ///
-    /// Panics where `indices` names a variable that the space does not have.
+    /// Panics if `indices` names a variable that the space does not have.
     pub fn embedded(&self, space: &Arc<TaylorSpace>, indices: &[usize]) -> Self {
         let Some(own) = self.space() else { return self.clone() };
         assert!(

@@ -43,7 +43,7 @@ impl Addition<f64> for ErrorTracking {
 }
 
 impl ErrorTracking {
-    /// Returns an upper bound of the sum of all errors; NaN where a sum overflowed.
+    /// Returns an upper bound of the sum of all errors; NaN if a sum overflowed.
     fn total(&self) -> f64 {
         inflated(self.errors.iter().sum(), self.count + PARTIAL_SUMS)
     }

@@ -12,7 +12,7 @@ use crate::taylor::polynomial::TaylorPolynomial;
 /// of its [`TaylorSpace`](crate::TaylorSpace). The remainder encloses the truncation error and
 /// every rounding error. A number belongs to every space.
 ///
-/// The remainder is [`Interval::ENTIRE`] where an operation has no bound. Coefficients are always
+/// The remainder is [`Interval::ENTIRE`] if an operation has no bound. Coefficients are always
 /// finite.
 ///
 /// Makino, Berz: Taylor models and other validated functional inclusion methods, Int. J. Pure Appl.
@@ -82,7 +82,7 @@ impl TaylorModel {
         bounds::range(&self.polynomial) + self.remainder
     }
 
-    /// Returns the number that the model equals exactly; `None` where it depends on t or has a
+    /// Returns the number that the model equals exactly; `None` if it depends on t or has a
     /// remainder.
     pub(super) fn as_number(&self) -> Option<f64> {
         let is_exact = self.polynomial.space().is_none() && self.remainder == Interval::ZERO;
@@ -102,8 +102,8 @@ impl From<f64> for TaylorModel {
 }
 
 impl From<TaylorPolynomial> for TaylorModel {
-    /// Returns the polynomial in t exactly, or a model without bounds where a coefficient is
-    /// infinite or NaN.
+    /// Returns the polynomial in t exactly, or a model without bounds if a coefficient is infinite
+    /// or NaN.
     fn from(polynomial: TaylorPolynomial) -> Self {
         if polynomial.is_finite() {
             Self { polynomial, remainder: Interval::ZERO }

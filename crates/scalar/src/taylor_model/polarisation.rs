@@ -37,7 +37,7 @@ pub(super) fn product_of_parts(
 }
 
 /// Returns N(x + ν y) and N(x - ν y) over the terms of one degree, up to the rounding of each term.
-/// It is `None` where the polynomials have different storage forms.
+/// It is `None` if the polynomials have different storage forms.
 fn norms_of_sum_and_difference(
     x: &TaylorPolynomial,
     y: &TaylorPolynomial,

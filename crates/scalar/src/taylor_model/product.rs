@@ -78,8 +78,8 @@ impl TaylorModel {
     }
 }
 
-/// Bounds the sum of the rounding errors when each coefficient is multiplied by about k; `None`
-/// where a product might overflow.
+/// Bounds the sum of the rounding errors when each coefficient is multiplied by about k; `None` if
+/// a product might overflow.
 ///
 /// Each product is rounded once, with a relative error of at most ε/2, or an absolute error of at
 /// most 2⁻¹⁰⁷⁵ where it underflows. With a power of two, only underflow causes an error.
@@ -94,7 +94,7 @@ fn scaling_error(p: &TaylorPolynomial, k: f64, is_power_of_two: bool) -> Option<
     Some(Interval::centred(0.0, add_up(rounding, underflow)))
 }
 
-/// Returns the smallest magnitude of a non-zero coefficient; ∞ where there is none.
+/// Returns the smallest magnitude of a non-zero coefficient; ∞ if there is none.
 fn smallest_magnitude(p: &TaylorPolynomial) -> f64 {
     let smaller = |least: f64, c: &f64| {
         let size = if *c == 0.0 { f64::INFINITY } else { c.abs() };

@@ -33,7 +33,7 @@ impl TaylorBox {
     ///
     /// # Panics
     ///
-    /// Panics where the number of sides differs from the number of variables.
+    /// Panics if the number of sides differs from the number of variables.
     pub fn new(space: &Arc<TaylorSpace>, sides: &[Interval]) -> Self {
         assert_eq!(sides.len(), space.variables(), "a box needs one side per variable");
         Self { space: Arc::clone(space), sides: sides.to_vec() }
@@ -50,7 +50,7 @@ impl TaylorBox {
     ///
     /// # Panics
     ///
-    /// Panics where the space has no variable i.
+    /// Panics if the space has no variable i.
     pub fn variable(&self, i: usize) -> TaylorModel {
         let (side, order) = (self.sides[i], self.space.order());
         let (mid, rad) = (side.mid(), side.rad());
@@ -71,12 +71,12 @@ impl TaylorBox {
     ///
     /// # Guarantee
     ///
-    /// Outer, for every point of `at`. The result is [`Interval::ENTIRE`] where `at` is not a
-    /// subset of this box, because a model is valid only inside it.
+    /// Outer, for every point of `at`. The result is [`Interval::ENTIRE`] if `at` is not a subset
+    /// of this box, because a model is valid only inside it.
     ///
     /// # Panics
     ///
-    /// Panics where `at` does not have one entry per variable.
+    /// Panics if `at` does not have one entry per variable.
     pub fn evaluate(&self, model: &TaylorModel, at: &[Interval]) -> Interval {
         assert_eq!(at.len(), self.sides.len(), "an evaluation needs one argument per variable");
         if !self.sides.iter().zip(at).all(|(side, x)| side.encloses(x)) {

@@ -96,7 +96,7 @@ struct SubBox {
     error: f64,
     /// Upper bound over the part, with the error.
     bound: f64,
-    /// The variable to cut; `None` where the bound cannot become smaller.
+    /// The variable to cut; `None` if the bound cannot become smaller.
     cut: Option<usize>,
 }
 

@@ -25,7 +25,7 @@ fn assert_ln(x: f64) {
 
 /// Computes r sin(φ - θ) = y cos θ - x sin θ for the angle φ of (x, y), at distance r from 0.
 ///
-/// It is not negative where θ is below φ by less than π.
+/// It is not negative if θ is below φ by less than π.
 fn rotated(y: f64, x: f64, angle: f64) -> BigRational {
     exact(y) * reference_sin(angle, 1, &PI) - exact(x) * reference_sin(angle, 0, &PI)
 }

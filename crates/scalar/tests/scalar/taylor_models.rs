@@ -128,7 +128,7 @@ fn models_enclose_the_exact_values() {
 }
 
 /// Fails where the remainder is more than `times` the sampled error. Sampling finds nearly all of
-/// the error where truncation dominates it.
+/// the error if truncation dominates it.
 fn is_tight<F: Function>((order, half, times): (u32, f64, f64)) {
     let (model, largest) = checked::<F>(order, half, 3_000);
     let remainder = model.remainder().mag();
@@ -260,7 +260,7 @@ proptest! {
     }
 }
 
-/// Returns the value of a bound, or `None` where the end of the remainder is infinite.
+/// Returns the value of a bound, or `None` if the end of the remainder is infinite.
 fn unless_infinite(end: f64, value: BigRational) -> Option<BigRational> {
     end.is_finite().then_some(value)
 }

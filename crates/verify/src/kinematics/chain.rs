@@ -36,7 +36,7 @@ struct ChainJoint {
     after: Frame,
 }
 
-/// Where the joints are at one position of the robot; memory that is used again.
+/// Frames of the joints at one position of the robot, in memory that is reused.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Posture {
     /// The joint frames after their motions, in the base frame.
@@ -88,7 +88,6 @@ impl Chain {
         Self { joints }
     }
 
-    /// Returns the number of joints n.
     pub(crate) fn joint_count(&self) -> usize {
         self.joints.len()
     }

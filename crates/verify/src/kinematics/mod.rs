@@ -1,4 +1,4 @@
-//! Where a point of a link is, as the joints move within a box.
+//! Enclosures of a point of a link while the joints move within a box.
 
 pub(crate) mod chain;
 pub(crate) mod linearised_point;

@@ -29,7 +29,6 @@ pub(crate) fn scaled(a: &Vector, by: Interval) -> Vector {
     a.map(|x| times(x, by))
 }
 
-/// Returns the cross product.
 pub(crate) fn cross(a: &Vector, b: &Vector) -> Vector {
     let minor = |i: usize, j: usize| times(a[i], b[j]) - times(a[j], b[i]);
     [minor(1, 2), minor(2, 0), minor(0, 1)]

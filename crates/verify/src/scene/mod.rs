@@ -1,4 +1,4 @@
-//! What a robot must stay clear of.
+//! The obstacles that a robot must stay clear of.
 
 pub(crate) mod direction;
 pub(crate) mod obstacle;

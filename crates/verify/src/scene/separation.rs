@@ -8,7 +8,7 @@ use crate::scene::direction::direction;
 use crate::scene::obstacle::{Obstacle, Solid};
 
 /// Returns a lower bound of the distance in m between the capsules of a link and an obstacle that
-/// has grown until `time` (s); negative where a distance above 0 is not proved.
+/// has grown until `time` (s); negative if a distance above 0 is not proved.
 ///
 /// `lowest` returns a lower bound of n · p over all points p of the segments of the capsules, which
 /// lie near `segment`; `radius` is the radius of the capsules. For any direction n, two convex sets

@@ -10,10 +10,11 @@ pub struct Brakes {
     /// The least and the greatest brake torque of each joint, at the output side of the gear
     /// \[N m; N\]. A brake opposes motion, and holds a joint that stands up to its torque.
     pub torque: Vec<[f64; 2]>,
-    /// When the brakes hold at the earliest and at the latest \[s\]. Until the earliest time there
-    /// is no brake torque; between both it may be anything up to the greatest one.
+    /// Earliest and latest time until the brakes hold \[s\]. Until the earliest time there is no
+    /// brake torque; between both it may be anything up to the greatest one.
     pub delay: [f64; 2],
-    /// How far the torque on each joint may be from the robot's equations, at any time \[N m; N\].
+    /// Largest difference of each joint's torque from the robot's equations, at any time \[N m;
+    /// N\].
     pub error: Vec<f64>,
     /// The greatest deceleration of each joint in a stop of category 1, on a straight path
     /// \[rad/s²; m/s²\]; `None` if the robot has no such stop.

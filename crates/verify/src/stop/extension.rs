@@ -5,7 +5,7 @@ use reachtube_robot::{JointKind, Robot};
 /// Number of positions of a joint that are tried at first.
 const GRID: usize = 48;
 
-/// How often each joint is moved in turn.
+/// Number of times that each joint is moved in turn.
 const ROUNDS: usize = 6;
 
 /// Returns a posture (rad; m) in which the point `tip` of the last link (its frame, m) is `part`

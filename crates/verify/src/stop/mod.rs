@@ -1,4 +1,4 @@
-//! How long a robot needs to stand still after a stop, and how far it moves.
+//! Time and distance of a robot until standstill after a stop.
 
 mod accelerations;
 pub(crate) mod along;

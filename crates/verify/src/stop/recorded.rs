@@ -19,7 +19,7 @@ const JOINTS: usize = 3;
 /// A reading is off by at most this many standard deviations of the sensor's noise.
 const SPREAD: f64 = 5.0;
 
-/// How long the path of a stop goes on, s.
+/// Duration of the path of a stop, s.
 const PATH: f64 = 100.0;
 
 /// A joint in a recorded stop, and the stop that is proved from the first recorded state.

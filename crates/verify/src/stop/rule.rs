@@ -1,7 +1,7 @@
 use crate::stop::brakes::Brakes;
 use crate::stop::category::Category;
 
-/// How the robot is stopped in a scenario, and when.
+/// Rule for the stop in a scenario: its category, brakes and trigger.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StopRule {
     /// The brakes.

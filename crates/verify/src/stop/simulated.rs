@@ -29,7 +29,7 @@ pub struct StopCase {
     pub brake: Vec<f64>,
     /// The time from which the brakes hold, after the drives are off, s.
     pub delay: f64,
-    /// What is added to the torque of each joint at all times \[N m; N\].
+    /// Torque added to each joint at all times \[N m; N\].
     pub error: Vec<f64>,
     /// The torques of the drives before they are off, each held for 2 ms: row-major, cycles x n;
     /// empty for category 0.
@@ -52,7 +52,7 @@ pub struct SimulatedStop {
 impl StopCase {
     /// Simulates the stop by the robot's equations with `steps` steps in 2 ms, until standstill or
     /// for 4 s. At standstill it is of first order: positions are off by about a step times the
-    /// speed before. `None` if a mass matrix is not invertible, or the arm runs away.
+    /// speed before. `None` if a mass matrix is not invertible, or the arm diverges.
     ///
     /// # Panics
     ///

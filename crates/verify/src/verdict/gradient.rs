@@ -1,4 +1,5 @@
-//! How a disturbance moves the state at a later sample: the adjoint of the linearised model.
+//! Gradient of the state at a later sample with respect to a disturbance: the adjoint of the
+//! linearised model.
 
 use nalgebra::{DMatrix, DVector};
 use reachtube_conform::data::Case;
@@ -8,7 +9,7 @@ use reachtube_reach::System;
 /// Bound of h |A| for a Runge-Kutta step of length h: its error is then below 1e-7 of the change.
 const STEP_NORM: f64 = 0.1;
 
-/// Beyond this |x| a motion counts as having run away, rad or rad/s.
+/// Beyond this |x| a motion counts as having diverge, rad or rad/s.
 const BOUND: f64 = 1e4;
 
 /// The motion of a model under given inputs, and its linearisation along the motion.
@@ -21,7 +22,7 @@ pub(super) struct Motion {
 
 impl Motion {
     /// Simulates a model along the samples of a case from `start` (2n) under `inputs` (samples x
-    /// n); ends early if the motion runs away.
+    /// n); ends early if the motion diverges.
     pub(super) fn new(dynamics: &System, case: &Case, start: &[f64], inputs: &[f64]) -> Self {
         let (n, times) = (case.joints(), case.grid.times());
         let inputs = &inputs[..n * times.len().saturating_sub(1)];

@@ -12,7 +12,6 @@ pub(super) struct PartOfStep {
 }
 
 impl PartOfStep {
-    /// Returns a whole step.
     pub(super) fn whole(step: usize) -> Self {
         Self { step, from: 0.0, to: 1.0 }
     }

@@ -57,8 +57,8 @@ pub struct StopClearance {
     pub link: String,
     /// Name of the obstacle.
     pub obstacle: String,
-    /// A lower bound of their distance until standstill \[m\]; negative where no distance above 0
-    /// is proved, minus infinity if no standstill is.
+    /// A lower bound of their distance until standstill \[m\]; negative if no distance above 0 is
+    /// proved, minus infinity if no standstill is.
     pub distance: f64,
     /// The time of the sample at which that stop begins, s.
     pub from: f64,
@@ -80,7 +80,7 @@ pub struct TriggerDistance {
     pub from: f64,
 }
 
-/// What is proved about the stop from a sample.
+/// Proved bounds of the stop from a sample.
 struct FromSample {
     /// The distance of each pair of a capsule and an obstacle.
     distances: Vec<f64>,

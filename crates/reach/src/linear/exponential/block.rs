@@ -79,8 +79,8 @@ impl ExponentialBlock {
         self.round_up(rad);
     }
 
-    /// Turns floating-point sums of magnitudes into upper bounds: ∞ where a product may have
-    /// overflowed, 0 where the entry is always zero.
+    /// Turns floating-point sums of magnitudes into upper bounds: ∞ if a product may have
+    /// overflowed, 0 if the entry is always zero.
     fn round_up(&self, errors: &mut [f64]) {
         let upward = 1.0 + 2.0 * relative_error(2 * self.mid.nrows());
         for pair in errors.chunks_exact_mut(self.zero.len()) {

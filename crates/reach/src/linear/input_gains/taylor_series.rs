@@ -145,7 +145,7 @@ impl TimePolynomial {
     }
 }
 
-/// Returns [lo, hi], or all numbers where an end is not a number.
+/// Returns [lo, hi], or all numbers if an end is not a number.
 pub(crate) fn between(lo: f64, hi: f64) -> Interval {
     Interval::new(lo, hi).unwrap_or(Interval::ENTIRE)
 }

@@ -23,7 +23,6 @@ pub(crate) fn first_variable(monomial: &[u8]) -> usize {
     monomial.iter().position(|e| *e > 0).expect("not a constant")
 }
 
-/// Returns the sum of the exponents.
 pub(crate) fn degree(exponents: &[u8]) -> u32 {
     exponents.iter().map(|e| u32::from(*e)).sum()
 }

@@ -80,8 +80,8 @@ impl PowerTable {
     /// Returns the trapezoid around a variable and its square, or around σ and κ.
     ///
     /// The result is the index of the square (or of κ - m) and the half-width of the trapezoid at
-    /// the bottom relative to the top. It is `None` where the side is not nearly symmetric about
-    /// zero, where the trapezoid does not exist, or where `index` does not belong to a first power.
+    /// the bottom relative to the top. It is `None` if the side is not nearly symmetric about zero,
+    /// where the trapezoid does not exist, or where `index` does not belong to a first power.
     pub(crate) fn trapezoid(&self, index: usize) -> Option<(usize, f64)> {
         let i = self.starts.binary_search(&index).ok()?;
         let has_square = *self.starts.get(i + 1)? > index + 1;

@@ -151,7 +151,6 @@ impl VertexBound {
         }
     }
 
-    /// Returns the power at an index as a part of a monomial.
     #[inline]
     pub(crate) fn part(&self, index: usize) -> Monomial {
         self.parts[index]
@@ -168,8 +167,8 @@ impl VertexBound {
         *radius += magnitude * Vector::from(c.abs() * (0.5 * (hi - lo)));
     }
 
-    /// Returns the range of the sum, up to [`VERTEX_ROUNDINGS`] per factor of each term; `None`
-    /// where it is not a number.
+    /// Returns the range of the sum, up to [`VERTEX_ROUNDINGS`] per factor of each term; `None` if
+    /// it is not a number.
     pub(crate) fn range(&mut self) -> Option<Interval> {
         let factors = &self.factors[..self.outer];
         let [lo, hi] = Vector::dispatch(Extrema { factors, values: &mut self.values });

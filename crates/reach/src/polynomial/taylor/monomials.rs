@@ -50,7 +50,6 @@ impl Monomials {
         index
     }
 
-    /// Returns the number of monomials.
     pub(crate) fn count(&self) -> usize {
         self.variables + self.products.len()
     }

@@ -36,7 +36,6 @@ impl Offset {
         (0..self.generators.len()).flat_map(|i| self.generators.get(i))
     }
 
-    /// Returns the length along axis i.
     pub(crate) fn along_axis(&self, i: usize) -> f64 {
         self.axis_lengths[i]
     }

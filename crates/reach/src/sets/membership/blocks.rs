@@ -36,7 +36,6 @@ impl Blocks {
         Self { dimension, entries }
     }
 
-    /// Returns the number of blocks.
     pub(super) fn len(&self) -> usize {
         self.entries.len() / self.dimension.max(1)
     }
@@ -186,7 +185,7 @@ fn add_products(product: &mut [Lanes], block: &[Lanes], factors: &Lanes) {
 }
 
 /// Adds a product, lane by lane. The sum is copied, since the compiler takes wide instructions only
-/// where nothing else can change it.
+/// if nothing else can change it.
 #[inline(always)]
 fn add_product(sum: &mut Lanes, x: &Lanes, y: &Lanes) {
     let mut new = *sum;

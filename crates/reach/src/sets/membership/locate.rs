@@ -22,13 +22,13 @@ const SEPARATED: f64 = 1e-12;
 /// exists.
 const RIDGE: f64 = 1e-9;
 
-/// How accurately a growth is found.
+/// Accuracy of a growth factor.
 const GROWTH: f64 = 0.05;
 
 /// Halvings and doublings of a Newton step at most.
 const LINE_STEPS: usize = 50;
 
-/// Where a point lies.
+/// Position of a point relative to a set.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Place {
     /// In the set, or in the set grown by the tolerance; the workspace has the factors.
@@ -133,7 +133,7 @@ impl Membership {
         }
     }
 
-    /// Tells whether `point`, one entry for each state, lies in the set grown by the factor 1 +
+    /// Returns whether `point`, one entry for each state, lies in the set grown by the factor 1 +
     /// `tolerance`, or outside the set.
     ///
     /// # Guarantee
@@ -298,7 +298,7 @@ fn gram_of_free(
 }
 
 /// The length t of a step for which the derivative along it, pᵀ d - Σ clip(z + t w) w, is small: 1
-/// where it is there, less where the derivative changed its sign, and more where it did not. The
+/// if it is there, less where the derivative changed its sign, and more where it did not. The
 /// function itself never falls: its derivative does, so that a derivative above 0 shows a rise.
 fn line_search(at_step: f64, along: &[Lanes], change: &[Lanes]) -> f64 {
     let slope = |t: f64| at_step - vectorised(AlongStep { t, along, change });

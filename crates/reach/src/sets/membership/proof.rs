@@ -5,7 +5,7 @@ use crate::sets::membership::blocks::{Lanes, total};
 use crate::sets::membership::locate::{Membership, MembershipWorkspace};
 use crate::upward::{relative_error, round_up_sum};
 
-/// What the proof that points lie in a zonotope needs besides their factors.
+/// Data for the proof that points lie in a zonotope, besides their factors.
 ///
 /// Factors α that were found in floating point leave a residual e = d - G α. With N about (G Gᵀ)⁻¹,
 /// the correction δ = Gᵀ N t of the factors gives G δ = e where K t = e, K = G Gᵀ N. If |1 - K| is
@@ -98,7 +98,7 @@ impl<'a> MembershipProof<'a> {
     }
 }
 
-/// The largest absolute value; NaN where there is one.
+/// The largest absolute value; NaN if there is one.
 fn largest(values: &[Lanes]) -> f64 {
     let larger = |max: f64, x: &f64| if x.abs() <= max || max.is_nan() { max } else { x.abs() };
     values.iter().flatten().fold(0.0, larger)

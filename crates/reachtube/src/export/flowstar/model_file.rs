@@ -66,7 +66,7 @@ fn signed(coefficient: f64) -> String {
     format!("{sign} {}", number(coefficient.abs()))
 }
 
-/// Returns the settings. The grammar asks for a remainder estimate, which linear systems ignore.
+/// Returns the settings. The grammar requires a remainder estimate, which linear systems ignore.
 fn settings(case: &ExportCase) -> String {
     format!(
         "  setting\n  {{\n    fixed steps {}\n    time {}\n    remainder estimation 0.1\n    \

@@ -22,7 +22,7 @@ pub(crate) struct SimulatedFriction {
 
 impl SimulatedFriction {
     /// Takes the friction of joint `j`. What counts are the recorded velocities, or the velocities
-    /// up to the limit where none are known.
+    /// up to the limit if none are known.
     pub(crate) fn new(robot: &Robot, j: usize) -> Self {
         let kinds = [
             ParameterKind::Viscous1,
@@ -41,13 +41,13 @@ impl SimulatedFriction {
         }
     }
 
-    /// Tells whether one viscous coefficient is not enough.
+    /// Returns whether one viscous coefficient is not enough.
     pub(crate) fn is_curved(&self) -> bool {
         self.viscous[1..] != [0.0, 0.0]
     }
 
     /// Returns the coefficient of the best line: least squares over all velocities that count, and
-    /// v1 where none are known.
+    /// v1 if none are known.
     pub(crate) fn line(&self) -> f64 {
         let [v1, v2, v3] = self.viscous;
         let Some([low, high]) = self.velocities else { return v1.max(0.0) };

@@ -22,10 +22,11 @@ const RANK: f64 = 1e-10;
 /// Largest difference of a torque \[N m\] that remains.
 const EQUAL: f64 = 1e-9;
 
-/// Second moments \[kg m²\] and mass \[kg\] of a body, for what the torques do not tell.
+/// Second moments \[kg m²\] and mass \[kg\] of a body, for quantities without an effect on the
+/// torques.
 const PRIOR: Vector4<f64> = Vector4::new(0.01, 0.01, 0.01, 1.0);
 
-/// Motor inertia \[kg m²; kg\], for what the torques do not tell.
+/// Motor inertia \[kg m²; kg\], for quantities without an effect on the torques.
 const MOTOR_PRIOR: f64 = 1.0;
 
 /// A body and the joint that moves it. Its frame is the joint's, moved by q.

@@ -11,7 +11,7 @@ use super::bodies::{Body, bodies};
 use crate::export::ExportError;
 use crate::export::text::{comment, harmless, number, numbers};
 
-/// How viscous friction that is no line is written.
+/// Form of viscous friction that is not linear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Damping {
     /// v1 and v3 exactly, as MuJoCo reads them since version 4.
@@ -20,7 +20,7 @@ pub enum Damping {
     Line,
 }
 
-/// What polynomial damping omits.
+/// The terms that polynomial damping omits.
 const NO_EVEN_TERM: &str = "Viscous friction is v1 qd + v3 qd^3, which MuJoCo reads since version \
 4; v2, whose torque has one sign for both directions, is left out, as are the dependence on the \
 load and the Stribeck effect. Drake and Pinocchio read robot_linear.xml.";
@@ -59,7 +59,7 @@ pub fn mjcf(robot: &Robot, damping: Damping) -> Result<String, ExportError> {
     Ok(text + "  </actuator>\n</mujoco>\n")
 }
 
-/// Tells whether a joint's viscous friction is no line.
+/// Returns whether a joint's viscous friction is no line.
 pub(super) fn is_curved(robot: &Robot) -> bool {
     (0..robot.joint_count()).any(|j| SimulatedFriction::new(robot, j).is_curved())
 }

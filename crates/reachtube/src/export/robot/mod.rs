@@ -3,7 +3,7 @@
 //! [`mjcf`] is for MuJoCo and [`urdf`] for everything else. Both have the robot's inverse dynamics.
 //! Their friction is one viscous coefficient, the best line over the recorded velocities, and one
 //! Coulomb magnitude at no load; MuJoCo has cubic friction exactly. Links that cannot exist, as
-//! links from base parameters, are replaced by bodies with the same torques, or refused where none
+//! links from base parameters, are replaced by bodies with the same torques, or refused if none
 //! were found.
 
 mod attributes;
@@ -44,7 +44,7 @@ pub fn mjcf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
     Ok(files)
 }
 
-/// Returns `robot.urdf`, `robot.toml` with what URDF cannot say, and `check_torques.csv`.
+/// Returns `robot.urdf`, `robot.toml` with the parts that URDF lacks, and `check_torques.csv`.
 ///
 /// # Errors
 ///
