@@ -34,7 +34,7 @@ class Answer(Record):
 
     @property
     def findings(self) -> list[Finding]:
-        """What the answer says, statement by statement: the verdict first."""
+        """The findings of the answer, the verdict first."""
         return [Finding._of(dict(finding)) for finding in self._content["findings"]]
 
     def to_dict(self) -> dict[str, Any]:
@@ -57,7 +57,7 @@ class Answer(Record):
 
 
 def infinite(value: float | None) -> float:
-    """Return a bound, which is infinite where JSON has null."""
+    """Return a bound, which is infinite if JSON has null."""
     return float("inf") if value is None else float(value)
 
 

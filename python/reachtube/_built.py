@@ -41,7 +41,7 @@ class JointRow:
     """How far the joint moves in a window, root mean square, and at least 5 % of its range, rad or
     m."""
     ratio: float | None
-    """Half the width by the displacement: up to 0.5 the set is useful, above 1 it says little."""
+    """Half the width by the displacement: up to 0.5 the set is useful, above 1 it is too wide."""
     growth: float | None
     """The factor by which the set would have to grow where a motion that was held out leaves it
     furthest; ``None`` if none could be compared."""
@@ -161,7 +161,7 @@ class BuiltModel(Record):
 
     @property
     def findings(self) -> list[Finding]:
-        """What the answer says, statement by statement.
+        """The findings of the answer.
 
         What contradicts the logs or the robot comes first, then the verdict.
         """
@@ -284,7 +284,7 @@ def model(
         Longest time between two samples, above 0 s; the torque is held over it. By default 1.9
         times the usual sample time, and 10 times if sample times jitter.
     columns
-        Columns of CSV files whose names do not tell, as ``{"q": "pos_{}", "first": 0}``; the keys
+        Columns of CSV files with ambiguous names, as ``{"q": "pos_{}", "first": 0}``; the keys
         are ``q``, ``qd``, ``tau``, ``current``, ``time``, ``first``, ``time_unit`` and ``angle``.
     topic
         Topics with joint states in MCAP and rosbag2; by default the only one that names joints of

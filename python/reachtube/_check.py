@@ -43,18 +43,18 @@ class Check(Record):
 
     @property
     def trust(self) -> dict[str, Any] | None:
-        """What the check says of the next motion; ``None`` where a recording was in the fit."""
+        """The statement about the next motion; ``None`` if a recording was in the fit."""
         trust = self._content.get("trust")
         return None if trust is None else dict(trust)
 
     @property
     def findings(self) -> list[Finding]:
-        """What the answer says, statement by statement: the verdict first."""
+        """The findings of the answer, the verdict first."""
         return findings_of(_reachtube.check_findings(self._text))
 
     @property
     def notes(self) -> list[str]:
-        """What a user should know about the recordings."""
+        """Notes about the recordings for the user."""
         return [str(note) for note in self._content["notes"]]
 
     def to_pandas(self) -> Any:

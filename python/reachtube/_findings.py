@@ -1,4 +1,4 @@
-"""What an answer says: findings, and reports of them."""
+"""Findings of an answer, and reports of them."""
 
 from __future__ import annotations
 

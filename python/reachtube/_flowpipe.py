@@ -23,7 +23,7 @@ MOST_VERTEX_VARIABLES, MOST_PIECES = 24, 1_000_000
 #: Exponents are bytes, and so is the order of Taylor models.
 MOST_EXPONENT = 255
 
-#: The order of Taylor models where none is given.
+#: The order of Taylor models if none is given.
 DEFAULT_ORDER = 4
 
 
@@ -49,8 +49,8 @@ class Flowpipe(Values):
     step_upper : array of shape (K - 1, N)
         Upper bounds over the steps.
     ended
-        The time, and the state whose bounds grew the most, where no enclosure could be verified
-        further; ``None`` where the flowpipe reached the last sample.
+        The time, and the state whose bounds grew the most, if no enclosure could be verified
+        further; ``None`` if the flowpipe reached the last sample.
     method
         ``"linearisation"`` or ``"taylor"``, chosen or given; ``None`` if older bytes lack it.
     taylor_order
@@ -209,7 +209,7 @@ def flowpipe(
         The set of each input: any measurable function with values in it.
     measured
         Measured inputs, arrays of shape (K,), held from sample to sample, about which the sets are;
-        0 where not given.
+        0 by default.
     method
         Conservative linearisation of zonotopes, for large inputs, or Taylor models in the initial
         state, for large initial sets. If neither it nor one of the last three settings is given,
@@ -222,12 +222,12 @@ def flowpipe(
     order
         The most generators of a zonotope, in multiples of the states.
     pieces
-        Number of pieces of the initial set along a state; 1 where not given.
+        Number of pieces of the initial set along a state; 1 by default.
 
     Returns
     -------
     Flowpipe
-        Where no enclosure could be verified to the end, it ends early and says so in ``ended``.
+        If no enclosure could be verified to the end, it ends early, as reported in ``ended``.
 
     Examples
     --------

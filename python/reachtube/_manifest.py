@@ -33,7 +33,7 @@ class Recording(NamedTuple):
     robot
         Which of several robots of the same kind it is of, for example a serial number.
     temperature
-        Temperature of the joints, °C, where the recording has no temperatures of its own.
+        Temperature of the joints, °C, if the recording has no temperatures of its own.
     """
 
     file: str
@@ -127,7 +127,7 @@ def read_manifest(
         if warm is not None and not COLDEST <= warm <= HOTTEST:
             raise ReachtubeError(
                 f"{address}: row {line} (from 0) has the temperature {warm} °C; it is between "
-                f"{COLDEST:g} and {HOTTEST:g} °C, or empty where it is not known"
+                f"{COLDEST:g} and {HOTTEST:g} °C, or empty if it is not known"
             )
     return rows
 

@@ -182,7 +182,7 @@ class Monitor:
 
     @property
     def delay(self) -> float:
-        """The time by which answers are late, s, where samples are filtered."""
+        """The time by which answers are late, s, if samples are filtered."""
         return self._native.delay()
 
     @property

@@ -60,10 +60,10 @@ def prepare(
         Whether the torque becomes the input u: motor torque less the robot's gravity and dry
         friction, for ``torque="compensated"``.
     torque
-        What the recorded torques are where they are compensated: ``"motor"``, the default, or
+        The kind of the recorded torques, if they are compensated: ``"motor"``, the default, or
         ``"link"`` for torques behind the gear, to which is added what the motors' inertia takes.
     columns
-        Columns of logs whose names do not tell, by the keys ``q``, ``qd``, ``tau``, ``current``,
+        Columns of logs with ambiguous names, by the keys ``q``, ``qd``, ``tau``, ``current``,
         ``time``, ``first``, ``time_unit`` and ``angle``, such as ``{"q": "pos_{}", "first": 0}``.
     max_gap
         Longest time between two samples, above 0 s.

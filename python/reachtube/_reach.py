@@ -35,7 +35,7 @@ class ReachableSet(Values):
     suite
         The suite.
     run
-        The run, where it has a nominal motion of its own.
+        The run, if it has a nominal motion of its own.
     t : array of shape (K,)
         Times since the first sample, s.
     nominal : array of shape (K, 2n)
@@ -49,7 +49,7 @@ class ReachableSet(Values):
     step_upper : array of shape (K - 1, 2n)
         Upper bounds over the steps.
     lost
-        Where and why the set ended before its suite; ``None`` where it did not.
+        Where and why the set ended before its suite; ``None`` if it did not.
     units
         Units of the states, 2n: rad and rad/s, or m and m/s for prismatic joints.
     """
@@ -132,10 +132,10 @@ def reach(
     data
         The recordings, as for `check`.
     suites
-        Names of the suites to use; all where none are given.
+        Names of the suites to use; all by default.
     until
         Samples later than this many seconds after the first are not used; the model's own limit
-        where it is not given.
+        if it is not given.
     max_gap
         Longest time between two samples, s.
     progress
@@ -194,10 +194,10 @@ def report(
     folder
         Where ``report.html`` is written; it works offline.
     suites
-        Names of the suites to use; all where none are given.
+        Names of the suites to use; all by default.
     until
         Samples later than this many seconds after the first are not used; the model's own limit
-        where it is not given.
+        if it is not given.
     max_gap
         Longest time between two samples, s.
     assets

@@ -11,7 +11,7 @@ Own = TypeVar("Own", bound="Record")
 
 
 class Record:
-    """A frozen result. Two results are equal where the product wrote the same of both."""
+    """A frozen result. Two results are equal if the product wrote the same of both."""
 
     __slots__ = ("_content", "_text")
     _text: str

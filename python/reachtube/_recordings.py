@@ -33,7 +33,7 @@ class Run:
     motion
         The motion that the suite is part of; suites of one motion are not independent.
     name
-        A name for messages; the number of the run in its data set where there is none.
+        A name for messages; the number of the run in its data set if there is none.
     temperature : array of shape (K, n), optional
         Temperatures of the joints, °C.
     order
@@ -152,7 +152,7 @@ class Run:
 
     @property
     def temperature(self) -> Array | None:
-        """Temperatures, K x n, °C, where they were recorded."""
+        """Temperatures, K x n, °C, if they were recorded."""
         return self._array(4)
 
     @property
@@ -222,7 +222,7 @@ class Recordings:
     runs
         The runs.
     simulated
-        Whether they are simulated, and not measured; models and pages then say so.
+        Whether they are simulated, and not measured; models and pages report it.
 
     Examples
     --------

@@ -108,7 +108,7 @@ class Robot:
         path
             A file whose name ends with ``.urdf``.
         base
-            First link of the chain, where the URDF has several chains.
+            First link of the chain, if the URDF has several chains.
         tip
             Last link of the chain, likewise.
         lock

@@ -117,7 +117,7 @@ class StopStudy(Answer):
 
     @property
     def annex_b(self) -> list[AnnexRow]:
-        """The table of ISO 10218-1, Annex B; empty unless it was asked for."""
+        """The table of ISO 10218-1, Annex B; empty unless requested."""
         rows = (self._answer["annex_b"] or {"rows": []})["rows"]
         return [
             AnnexRow(

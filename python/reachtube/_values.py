@@ -17,7 +17,7 @@ Own = TypeVar("Own", bound="Values")
 class Values:
     """Base of frozen dataclasses whose fields are arrays of float64 and what JSON has.
 
-    The arrays cannot be written to. Two results are equal where their numbers are, to the last bit;
+    The arrays cannot be written to. Two results are equal if their numbers are, to the last bit;
     -0 differs from 0, and NaN equals itself.
     """
 

@@ -24,7 +24,7 @@ class Clearance:
     obstacle: str
     """The obstacle."""
     distance: float
-    """A lower bound over all motions of the model, m; negative where none above 0 is proved."""
+    """A lower bound over all motions of the model, m; negative if none above 0 is proved."""
     time: float
     """Start of the step in which it is the smallest, s."""
 
@@ -69,7 +69,7 @@ class Witness:
     obstacle: str
     """The obstacle."""
     distance: float
-    """Their distance in floating point, m; negative where they overlap."""
+    """Their distance in floating point, m; negative if they overlap."""
     time: float
     """Time of that sample, s."""
     start: tuple[float, ...]

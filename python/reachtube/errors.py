@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 class ReachtubeError(Exception):
-    """A job that could not be done; the text says what is wrong and what to do.
+    """A job that could not be done; the text has the problem and the remedy.
 
     A model that is not conformant is no error but a value.
     """
@@ -21,9 +21,9 @@ class Defect:
     file
         The file, or the name of a run in memory.
     line
-        Line of the file, from 1; ``None`` where there is none.
+        Line of the file, from 1; ``None`` if there is none.
     joint
-        Number of the joint, from 1; ``None`` where there is none.
+        Number of the joint, from 1; ``None`` if there is none.
     kind
         ``"header"``, ``"gap"``, ``"value"``, ...
     problem

@@ -171,7 +171,7 @@ def npz(
     Parameters
     ----------
     path
-        The file. An array ``joints`` names the columns of the others where there is one.
+        The file. An array ``joints`` names the columns of the others if there is one.
     joints
         Names of the robot's joints, in its order; the file must name its own then.
     suite

@@ -34,9 +34,9 @@ def reachable_set(
     data
         Recordings. Other suites, and other runs if the set belongs to one run, are left out.
     deviation
-        Whether the nominal motion is taken off.
+        Whether the nominal motion is subtracted.
     figure
-        The figure to draw in; a new one where none is given.
+        The figure to draw in; a new one if none is given.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def flowpipe(
     y
         The state along the vertical axis, from 0.
     axis
-        The axes to draw in; new ones where none are given.
+        The axes to draw in; new ones if none are given.
 
     Returns
     -------

@@ -35,8 +35,7 @@ pub(crate) fn read_csv(row: &Entry, content: &[u8], options: &ReadOptions) -> Re
     let run = parse_csv(name, content, options)?;
     match &row.5 {
         Some(expected) if !expected.eq_ignore_ascii_case(&run.sha256) => {
-            let problem =
-                format!("its SHA-256 is {}, but the manifest says {expected}", run.sha256);
+            let problem = format!("its SHA-256 is {}, but the manifest has {expected}", run.sha256);
             let remedy = "the file was changed or damaged: restore it, or write the manifest again";
             Err(vec![Defect::new(name, None, problem, remedy).of_kind(DefectKind::File)])
         }

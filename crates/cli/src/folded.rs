@@ -1,6 +1,6 @@
 //! Messages that repeat for each file, on one line.
 
-/// What names of files end with.
+/// Endings of file names.
 const ENDINGS: [&str; 3] = [".csv", ".mcap", ".db3"];
 
 /// Number of names that a line lists.
@@ -8,7 +8,7 @@ const LISTED: usize = 3;
 
 /// A message and the files or suites that it is about.
 struct Group<'a> {
-    /// What the messages have in common: their text without the name, and without numbers.
+    /// The common part of the messages: their text without the name, and without numbers.
     common: String,
     first: &'a str,
     /// Each name once.
@@ -58,7 +58,7 @@ impl<'a> Group<'a> {
     }
 }
 
-/// What messages about a suite begin with.
+/// Beginning of messages about a suite.
 const SUITE: &str = "suite ";
 
 /// Splits a message into the file or suite that it begins with and the rest; the name is empty if

@@ -46,7 +46,6 @@ impl GlobalOptions {
     }
 }
 
-/// Returns the options of the process.
 pub(crate) fn global() -> GlobalOptions {
     OPTIONS.get().copied().unwrap_or_default()
 }

@@ -14,7 +14,7 @@ use crate::output;
 pub(crate) const TIMES: Choices =
     &[("header", "stamps in the messages"), ("log", "times of receipt")];
 
-// Options about logs whose names and topics do not tell.
+// Options about logs with ambiguous names or topics.
 #[derive(Debug, Args)]
 pub(crate) struct LogArguments {
     /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;

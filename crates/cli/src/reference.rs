@@ -15,8 +15,8 @@ const OPENING: &str = "\
 two. `reachtube COMMAND --help-all` has examples and remarks too. [The reference](reference.md)
 describes output, exit codes, findings and errors.
 
-The exit code of every command is 0 for done, 1 for not conformant and 2 for an error. Where a
-command means something else by them, its section says so.
+The exit code of every command is 0 for done, 1 for not conformant and 2 for an error. If a
+command uses them otherwise, its section describes it.
 ";
 
 const GLOBAL: &str = "Global options";
@@ -47,7 +47,7 @@ pub(crate) fn markdown(command: Command) -> String {
 struct Shared {
     /// Heading of the section that lists them.
     heading: String,
-    /// What is printed of each.
+    /// The texts to print.
     texts: Vec<String>,
 }
 
@@ -91,7 +91,6 @@ impl Shared {
     }
 }
 
-/// Returns a command and all commands below it.
 fn below_and_self(command: &Command) -> Vec<&Command> {
     let below = command.get_subcommands().flat_map(below_and_self);
     std::iter::once(command).chain(below).collect()

@@ -1,4 +1,4 @@
-//! What was understood of logs, in words.
+//! The interpretation of logs in words.
 
 use std::path::Path;
 

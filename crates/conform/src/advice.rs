@@ -2,7 +2,7 @@ use std::fmt;
 
 use crate::result::front_end::{FrontEnd, Setting};
 
-/// What is wrong and what to do, and the settings that do it.
+/// The problem, the remedy, and the settings that apply it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Advice {
     /// The problem and what to do, in words that name no option.

@@ -1,4 +1,4 @@
-//! How a model carries over to a motion that nothing of it has seen.
+//! Evaluation of a model on a motion that was left out of all its steps.
 
 use crate::data::problem::Problem;
 use crate::error::{Error, Result};
@@ -11,7 +11,7 @@ use crate::next_motion::point_gauge::leave_points_out;
 use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 
-/// Fits the nominal model of a linear model, if `settings` ask for it, and finds the sets without
+/// Fits the nominal model of a linear model, if `settings` select it, and finds the sets without
 /// one motion, and compares the motion with these sets: its rows, or its points where the notion
 /// asks them. A fit is steered by the rows in any notion.
 ///

@@ -1,4 +1,4 @@
-//! A comparison of a model with recordings, as every front end asks for it.
+//! A comparison of a model with recordings, as every front end poses it.
 
 use reachtube_recordings::{GapLimit, RunSource};
 

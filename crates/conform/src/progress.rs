@@ -12,8 +12,8 @@ pub trait Progress: Sync {
         let _ = what;
     }
 
-    /// Returns whether the job is no longer wanted. It is asked between recordings and between the
-    /// steps of a search, and the job then ends with [`Error::Cancelled`](crate::Error::Cancelled).
+    /// Returns whether the job is cancelled. It is called between recordings and between the steps
+    /// of a search, and the job then ends with [`Error::Cancelled`](crate::Error::Cancelled).
     fn is_cancelled(&self) -> bool {
         false
     }
@@ -26,7 +26,7 @@ pub struct Silent;
 impl Progress for Silent {}
 
 impl dyn Progress + '_ {
-    /// Ends a job that is no longer wanted.
+    /// Ends a job that is cancelled.
     pub(crate) fn go_on(&self) -> Result<()> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     }

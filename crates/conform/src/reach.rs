@@ -35,7 +35,7 @@ pub struct SuiteReach {
     pub tube: StepBounds,
     /// Number of states 2n.
     pub dimension: usize,
-    /// Where the set could not be followed further, if so: times end there.
+    /// The early end of the set, if any: times end there.
     pub lost: Option<Lost>,
 }
 
@@ -49,7 +49,7 @@ pub struct SuiteReach {
 ///
 /// # Errors
 ///
-/// As [`Problem::run`]; a model that runs away without any uncertainty.
+/// As [`Problem::run`]; a model that diverges without any uncertainty.
 pub fn reach(problem: &Problem, tube: &Tube) -> Result<Vec<SuiteReach>> {
     match tube.enclosure {
         Enclosure::Inner => linear(problem, tube),

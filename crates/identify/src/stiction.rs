@@ -145,8 +145,8 @@ pub(crate) fn one_sided(robot: &Robot, sides: &[f64]) -> Vec<String> {
         let few = (below.min(above) as f64) < LEAST_SHARE * known as f64;
         (known >= FEWEST_RESTS && few).then(|| {
             format!(
-                "{name} comes to {} of {known} poses from the same side, so that friction that it \
-                 keeps at rest looks like gravity; approach each pose from both sides",
+                "{name} comes to {} of {known} poses from the same side, so that its static \
+                    friction looks like gravity; approach each pose from both sides",
                 below.max(above)
             )
         })
@@ -164,7 +164,7 @@ pub(crate) fn unknown_sides(sides: &[f64], joints: usize) -> Option<String> {
     (unknown > 0).then(|| {
         format!(
             "the recordings of {unknown} of {count} poses begin at rest and do not show from which \
-             side they were reached; friction that joints keep there counts as noise of the torque"
+             side they were reached; static friction counts as noise of the torque"
         )
     })
 }

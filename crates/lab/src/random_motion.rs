@@ -67,7 +67,7 @@ impl Motion {
     }
 
     /// Returns a motion between two poses \[rad\] in which the fastest joint peaks at `peak`
-    /// \[rad/s\], or slower where a limit asks for it. It lasts whole cycles, at least one.
+    /// \[rad/s\], or slower if a limit requires it. It lasts whole cycles, at least one.
     pub(crate) fn between(robot: &Robot, start: Vec<f64>, end: &[f64], peak: f64) -> Self {
         let travel: Vec<f64> = end.iter().zip(&start).map(|(end, start)| end - start).collect();
         let time = |(joint, travel): (&Joint, &f64)| {

@@ -154,7 +154,7 @@ impl Scan<'_> {
             self.path,
             self.offset_of(&found),
             format!(
-                "SQLite finds that the file is damaged ({}), as where the computer lost power",
+                "SQLite finds that the file is damaged ({}), for example after a loss of power",
                 found.trim().replace('\n', " ")
             ),
         ))

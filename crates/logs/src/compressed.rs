@@ -23,7 +23,7 @@ pub(crate) fn decompressed(path: &Path, recover: bool) -> Result<NamedTempFile> 
         |source, remedy| reachtube_files::Error::Read { path: path.into(), source, remedy };
     let open = || zstd::Decoder::new(File::open(path)?);
     let decoder = open().map_err(|e| unreadable(e, "check the path and its permissions"))?;
-    let room = "make room for what is decompressed of it in the folder for temporary files";
+    let room = "free space in the temporary folder for the decompressed file";
     let mut plain = NamedTempFile::new().map_err(|error| unreadable(error, room))?;
     let mut content = Checked { inner: decoder.take(LARGEST), fault: None };
     let written = io::copy(&mut content, plain.as_file_mut());

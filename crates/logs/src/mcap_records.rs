@@ -60,7 +60,9 @@ impl McapRecords {
             let length = u64::from_le_bytes(head[1..].try_into().expect("eight bytes remain"));
             let whole = length.saturating_add(HEAD as u64);
             if kind == 0 {
-                let problem = "no record starts here, as where the file was not written to".into();
+                let problem = "no record starts here, for example because this part was never \
+                    written"
+                    .into();
                 return Ok(Some(self.last(Piece::broken(offset, problem, left))));
             }
             if matches!(kind, op::DATA_END | op::FOOTER) && whole <= left {
@@ -108,7 +110,7 @@ impl McapRecords {
         self.file.read_exact(&mut magic).map_err(shrunk)?;
         self.finished = true;
         let problem =
-            "the data is whole, but the file ends without its footer, as where it was cut short";
+            "the data is whole, but the file ends without its footer, because it was cut short";
         Ok((magic != MAGIC).then(|| Piece::broken(offset, problem.into(), 0)))
     }
 

@@ -1,6 +1,6 @@
 //! Tests of the page in a headless browser: what a reader does with the mouse and the keys.
 //!
-//! The tests need Chromium or Chrome on the PATH; they are ignored unless asked for.
+//! The tests need Chromium or Chrome on the PATH; they are ignored unless requested.
 
 use super::html::write_html;
 use super::library::{Assets, LIBRARY_FILE, write_library};

@@ -47,7 +47,7 @@ pub struct Chart {
     pub x: String,
     /// Label of the vertical axis with its unit.
     pub y: String,
-    /// Corners of a grey area behind the series, one after the other; none where it is empty.
+    /// Corners of a grey area behind the series, one after the other; none if it is empty.
     pub area: Vec<(f64, f64)>,
     /// The series, each drawn over the one before it.
     pub series: Vec<Series>,
@@ -121,7 +121,6 @@ pub fn charts_svg(charts: &[Chart], columns: usize, label: &str) -> Result<Strin
     Ok(document.into_string() + "\n")
 }
 
-/// Returns all points of a chart.
 fn points(chart: &Chart) -> impl Iterator<Item = &Point> {
     chart.area.iter().chain(chart.series.iter().flat_map(|series| &series.points))
 }

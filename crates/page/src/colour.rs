@@ -53,7 +53,7 @@ pub(super) fn heat(runs: &[RunTrace]) -> Heat {
     }
 }
 
-/// Places runs by the temperature of one joint, from 0; `None` where a run has none.
+/// Places runs by the temperature of one joint, from 0; `None` if a run has none.
 pub(super) fn heat_of_joint(runs: &[RunTrace], joint: usize) -> Option<Vec<f64>> {
     let degrees: Option<Vec<f64>> =
         runs.iter().map(|run| run.temperatures.get(joint).copied()).collect();

@@ -19,7 +19,7 @@ use plotters::prelude::*;
 ///
 /// Lines are thinned to what the plot can show: in each pixel column a line passes the lowest and
 /// the highest sample within a quarter of a pixel. Between samples the edges of the bands are
-/// joined by straight lines, which claims nothing about the reachable set there.
+/// joined by straight lines, which is no claim about the reachable set there.
 ///
 /// # Errors
 ///
@@ -144,7 +144,6 @@ mod tests {
     use crate::suite_figure::Nominal;
     use roxmltree::{Document, Node};
 
-    /// Returns the elements with a tag name.
     fn elements<'a>(svg: &'a Document, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
         svg.descendants()
             .filter(move |node| node.has_tag_name(("http://www.w3.org/2000/svg", name)))

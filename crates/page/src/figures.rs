@@ -14,7 +14,7 @@ use reachtube_scalar::number::{counted, significant};
 pub(super) const FIGURES: &str = "Recordings in the set";
 /// Number of suites up to which each has a static figure.
 pub(super) const MOST_STATIC: usize = 12;
-/// Number of suites with a static figure where there are more; the first are the worst.
+/// Number of suites with a static figure if there are more; the first are the worst.
 const STATIC_OF_MANY: usize = 3;
 
 /// Returns the figures under their buttons, one per suite and one per view; only the script shows
@@ -54,8 +54,8 @@ pub(super) fn figures(page: &Page) -> Result<Markup, Error> {
     })
 }
 
-/// Returns a suite's name; where there are many, also the part of the set that its runs reach, and
-/// the number of rows that they decide or that lie outside.
+/// Returns a suite's name; if there are many, also the part of the set that its runs reach, and the
+/// number of rows that they decide or that lie outside.
 fn suite_label(suite: &SuiteFigure, are_many: bool) -> String {
     let Some(part) = suite.furthest.filter(|_| are_many) else { return suite.suite.clone() };
     let rows = match (suite.outside, suite.decided()) {

@@ -80,8 +80,8 @@ fn percent(part: f64) -> String {
     format!("{:.1} %", 100.0 * part)
 }
 
-/// Returns charts in stacks of one chart over another, the lower one with a height \[px\] where it
-/// has one of its own.
+/// Returns charts in stacks of one chart over another, the lower one with a height \[px\] if it has
+/// one of its own.
 fn stacks(stacks: &[[Chart; 2]], height: Option<f64>) -> Result<Markup, Error> {
     let stack = |[above, below]: &[Chart; 2]| {
         let below = match height {
@@ -148,7 +148,7 @@ fn all_recordings(all: &LogValidation, joints: &[&str], kinds: &[JointKind]) -> 
     table("Error of the predicted torque over all recordings, where a joint moves", &head, &rows)
 }
 
-/// Returns the relative errors of the recordings, the worst first where there are many.
+/// Returns the relative errors of the recordings, the worst first if there are many.
 fn each_recording(validation: &[LogValidation], joints: &[&str]) -> Markup {
     let mut logs: Vec<&LogValidation> = validation[..validation.len() - 1].iter().collect();
     let worst = |log: &LogValidation| {
@@ -221,7 +221,6 @@ fn friction(found: &Identification) -> Result<Markup, Error> {
     })
 }
 
-/// Returns the kind of the joint of a friction fit.
 fn kind_of(found: &Identification, fit: &FrictionFit) -> JointKind {
     let own = found.description.joints.iter().find(|joint| joint.name == fit.joint.joint);
     own.map_or_else(JointKind::default, |joint| joint.kind)

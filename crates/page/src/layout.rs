@@ -97,12 +97,12 @@ impl Layout {
         if self.is_velocity(state) { BELOW_VELOCITY } else { BELOW_POSITION }
     }
 
-    /// Tells whether the state is a velocity, which is drawn in the lower row with the time axis.
+    /// Returns whether the state is a velocity, which is drawn in the lower row with the time axis.
     pub(super) fn is_velocity(&self, state: usize) -> bool {
         state >= self.joints
     }
 
-    /// Tells whether the panel of the state is the first of its row.
+    /// Returns whether the panel of the state is the first of its row.
     pub(super) fn starts_row(&self, state: usize) -> bool {
         (state % self.joints).is_multiple_of(self.columns)
     }

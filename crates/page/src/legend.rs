@@ -78,7 +78,6 @@ impl Legend {
         Legend { entries: flow(entries, width) }
     }
 
-    /// Returns the number of rows.
     pub(super) fn rows(&self) -> usize {
         self.entries.last().map_or(0, |entry| entry.2 + 1)
     }

@@ -21,7 +21,7 @@ pub struct Page {
     pub(crate) lead: Lead,
     /// The figures, in the order of their buttons; the first one is open.
     pub(crate) suites: Vec<SuiteFigure>,
-    /// The phase planes of the joints, where the model is linear.
+    /// The phase planes of the joints, if the model is linear.
     pub(crate) phase_planes: Vec<Chart>,
     /// What was fitted of the nominal model, for a model that was.
     pub(crate) nominal: Vec<TextTable>,
@@ -50,7 +50,7 @@ pub(crate) struct Lead {
     pub facts: Vec<(String, String)>,
     /// The figure of the widest set.
     pub figure: Option<Chart>,
-    /// What the figure shows.
+    /// The caption.
     pub caption: String,
     /// Other pages about the same model: words, and the address from this page.
     pub links: Vec<(String, String)>,
@@ -97,6 +97,6 @@ pub(crate) struct JointSets {
     pub x0_qd: Bounds,
     /// Input set U \[N m; N\].
     pub u: Bounds,
-    /// Measurement noise V of position and velocity; `None` where no noise was modelled.
+    /// Measurement noise V of position and velocity; `None` if no noise was modelled.
     pub noise: Option<[Bounds; 2]>,
 }

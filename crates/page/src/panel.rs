@@ -72,13 +72,13 @@ impl Content {
     }
 }
 
-/// Returns the mark of a tight spot on the line of its run; none where the line is empty.
+/// Returns the mark of a tight spot on the line of its run; none if the line is empty.
 fn mark(spot: &TightSpot, line: &[Point]) -> Option<(Point, bool)> {
     (!line.is_empty()).then(|| ((spot.time_s, interpolate(line, spot.time_s)), spot.margin < 0.0))
 }
 
-/// Returns a line, minus the nominal motion where there is one. With a nominal motion, the line
-/// covers only the times of `grid`, at which the nominal motion is given.
+/// Returns a line, minus the nominal motion if there is one. With a nominal motion, the line covers
+/// only the times of `grid`, at which the nominal motion is given.
 pub(super) fn relative(
     times: &[f64],
     values: &[f64],

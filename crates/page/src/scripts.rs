@@ -33,7 +33,7 @@ struct SeriesData {
     colour: [u8; 3],
 }
 
-/// Returns the scripts of a page with figures; nothing of a page without.
+/// Returns the scripts of a page with figures; no text for a page without figures.
 ///
 /// The browser runs only the controls by itself. The others are texts to it: the words and the
 /// first static figure are on the screen before the script reads the library, and the numbers of a

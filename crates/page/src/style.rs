@@ -24,12 +24,10 @@ pub(super) fn font(size: f64, style: FontStyle) -> FontDesc<'static> {
     FontDesc::new(FontFamily::SansSerif, f64::from(units(size)) * FONT_SCALE, style)
 }
 
-/// Returns the style of a text that is centred on its point.
 pub(super) fn centred(font: FontDesc<'static>) -> TextStyle<'static> {
     TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Center, VPos::Center))
 }
 
-/// Returns the style of a text that starts at its point.
 pub(super) fn starting(font: FontDesc<'static>) -> TextStyle<'static> {
     TextStyle::from(font).color(&INK).pos(Pos::new(HPos::Left, VPos::Center))
 }

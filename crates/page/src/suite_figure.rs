@@ -74,7 +74,7 @@ pub struct RunTrace {
     pub order: usize,
     /// Temperature \[°C\]; it colours the lines where every run has one.
     pub temperature: Option<f64>,
-    /// Mean temperature of each joint over the run \[°C\], n; empty where none were recorded. Where
+    /// Mean temperature of each joint over the run \[°C\], n; empty if none were recorded. Where
     /// every run has them, they colour the lines of each joint over its own range.
     pub temperatures: Vec<f64>,
     /// Sample times \[s\], strictly increasing.
@@ -82,7 +82,7 @@ pub struct RunTrace {
     /// Samples, shape `[2n][times]`.
     pub states: Vec<Vec<f64>>,
     /// The part of the set's radius that the run reaches at most, over samples and states: 1 at the
-    /// boundary, more outside. `None` where it is not known.
+    /// boundary, more outside. `None` if it is not known.
     pub gauge: Option<f64>,
     /// Number of support rows of the linear program that this run decides.
     pub touches: usize,
@@ -110,7 +110,7 @@ pub struct TightSpot {
     pub state: usize,
     /// The side of the reachable set.
     pub side: Side,
-    /// Distance to the boundary in the state's unit; negative where the sample lies outside.
+    /// Distance to the boundary in the state's unit; negative if the sample lies outside.
     pub margin: f64,
 }
 
@@ -128,7 +128,7 @@ pub enum View {
 pub(super) const SAME_TIME: f64 = 1e-9;
 
 impl RunTrace {
-    /// Tells whether the run's samples are at the first of some times.
+    /// Returns whether the run's samples are at the first of some times.
     pub(super) fn has_times(&self, times: &[f64]) -> bool {
         let is_same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_TIME;
         self.times.len() <= times.len() && self.times.iter().zip(times).all(is_same)

@@ -31,8 +31,8 @@ const TERMS: [(&str, &str); 21] = [
     ("notion", "the directions in which recordings must lie in the set"),
     (
         "of its motion",
-        "half the width of the joint's set, by how far the joint moves; above 100 % \
-                       the set says little about the motion",
+        "half the width of the joint's set, by how far the joint moves; above 100 % the set \
+            hardly limits the motion",
     ),
     ("phase plane", "position and velocity of one joint together"),
     ("reachable set", "the states that the model can reach from X0 under every input in U"),
@@ -40,7 +40,11 @@ const TERMS: [(&str, &str); 21] = [
     ("suite", "recordings from one start under one input"),
     ("vacuous", "proved, but too wide to limit the motion of some joint"),
     ("X0", "set of initial states, around the nominal start"),
-    ("U", "set of inputs, around the nominal input: it explains what the nominal motion does not"),
+    (
+        "U",
+        "set of inputs, around the nominal input: it covers the differences between nominal \
+        and recorded motion",
+    ),
     ("V", "set of the measurement noise"),
 ];
 

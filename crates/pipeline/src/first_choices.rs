@@ -39,7 +39,7 @@ pub(crate) fn first_choices<'a, 'b: 'a>(
     chooser.choices.expansion = Some(expansion.clone());
     let measured = || noise(raw, is_filtered.then_some(cut_off));
     let reason = match is_filtered {
-        true => "5 standard deviations before the filter, lessened by what the filter takes",
+        true => "5 standard deviations before the filter, less the noise that the filter removes",
         false => "5 standard deviations",
     };
     let reason = why(given.sensor_noise.is_some(), reason);

@@ -1,4 +1,4 @@
-//! A conformance over windows, as every step of the pipeline asks for it.
+//! A conformance over windows, as every step of the pipeline uses it.
 
 use reachtube_abstraction::ExpansionPoint;
 use reachtube_conform::settings::{Equations, NominalStart};
@@ -26,7 +26,7 @@ pub(crate) struct Trial<'a> {
     pub equations: Equations,
     /// Where nominal motions start.
     pub nominal: NominalStart,
-    /// What is added to the radii of X0 and U, 3n, if it is given.
+    /// Radii added to X0 and U, 3n, if it is given.
     pub allowance: Option<Vec<f64>>,
     /// The part of the rows of motions left out that may leave the sets without an allowance, and
     /// the factor that one of them may need.

@@ -46,7 +46,7 @@ impl Run {
         Ok(self)
     }
 
-    /// Returns the run with the SHA-256 of its numbers, where it has none yet.
+    /// Returns the run with the SHA-256 of its numbers, if it has none yet.
     #[must_use]
     pub fn with_digest(mut self) -> Self {
         if self.sha256.is_empty() {

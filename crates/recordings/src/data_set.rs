@@ -65,7 +65,6 @@ impl DataSet {
         Ok(Self { root, runs, unlisted })
     }
 
-    /// Returns the folder.
     #[must_use]
     pub(crate) fn root(&self) -> &Path {
         &self.root

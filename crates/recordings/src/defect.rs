@@ -77,9 +77,9 @@ pub struct Defect {
     pub joint: Option<usize>,
     /// The kind of defect.
     pub kind: DefectKind,
-    /// What is wrong, with the value and the limit.
+    /// The problem, with the value and the limit.
     pub problem: String,
-    /// What to do.
+    /// The remedy.
     pub remedy: String,
 }
 

@@ -12,7 +12,7 @@ pub struct Sample {
     pub time: f64,
     /// Positions, velocities and torques, 3n.
     pub values: Vec<f64>,
-    /// What is added to the input, n, N m.
+    /// Torque added to the input, n, N m.
     pub added: Vec<f64>,
 }
 

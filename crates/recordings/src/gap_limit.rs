@@ -12,7 +12,7 @@ const JITTER_GAP: f64 = 10.0;
 /// Share of the steps that must equal the usual one for the rate to be fixed.
 const FIXED_RATE_SHARE: f64 = 0.9;
 
-/// How long the time between two samples may be.
+/// Longest time between two samples.
 ///
 /// The input is held from each sample to the next, so within a gap it is only a guess.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -70,12 +70,12 @@ pub struct JointSummary {
     pub torque: f64,
     /// Range of the first positions, rad.
     pub start_spread: f64,
-    /// Range of the last positions of the longest runs, rad, where there are two or more.
+    /// Range of the last positions of the longest runs, rad, if there are two or more.
     pub end_spread: Option<f64>,
     /// Correlation of the last position with the order of the recordings, from -1 to 1. It is near
     /// ±1 where the robot drifts, for example while its joints warm up.
     pub drift: Option<f64>,
-    /// Lowest and highest recorded temperature, °C, where there is one.
+    /// Lowest and highest recorded temperature, °C, if there is one.
     pub temperature: Option<[f64; 2]>,
     /// Fraction of the samples in which the joint sticks (below 0.01 rad/s).
     pub sticking: f64,

@@ -23,7 +23,7 @@ use crate::source::{ReadOptions, RunSource};
 pub struct MemoryRuns {
     entries: Vec<RunEntry>,
     runs: Vec<Run>,
-    /// What messages call the runs, where it is known.
+    /// The name of the runs in messages, if it is known.
     name: Option<PathBuf>,
 }
 

@@ -50,7 +50,7 @@ pub fn copies_note<'a>(read: impl Iterator<Item = (&'a str, &'a str)>) -> Option
 ///
 /// # Panics
 ///
-/// Panics where the source has no run of an index.
+/// Panics if the source has no run of an index.
 pub(crate) fn temperature_notes(
     source: &dyn RunSource,
     read: impl Iterator<Item = (usize, bool)>,

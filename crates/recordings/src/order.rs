@@ -9,7 +9,7 @@ use crate::text::quoted;
 const REMEDY: &str = "number the runs of a suite 1, 2, 3, ... in the order in which they were \
                       recorded, or omit the column";
 
-/// What a line of the index says about the order of a run.
+/// The order of a run in a line of the index.
 pub(crate) struct WrittenOrder<'a> {
     /// Suite, and kind of a run without a suite. Runs with equal groups are counted together.
     pub group: (Option<&'a str>, Option<&'a str>),

@@ -17,15 +17,15 @@ pub struct Refusal {
     pub recordings: usize,
     /// The first of them.
     pub first: DefectPlace,
-    /// What to do.
+    /// The remedy.
     pub remedy: String,
-    /// The option that accepts all of them, where there is one.
+    /// The option that accepts all of them, if there is one.
     pub accepted_by: Option<String>,
     #[serde(skip)]
     widest: DefectKind,
 }
 
-/// Where a defect is, and what is wrong there.
+/// Place and problem of a defect.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct DefectPlace {
     /// Path of the file.

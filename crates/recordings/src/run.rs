@@ -12,7 +12,7 @@ pub struct Run {
     pub states: Vec<f64>,
     /// Recorded torques, N m, row-major K x n.
     pub torques: Vec<f64>,
-    /// Recorded temperatures of the joints, °C, row-major K x n; empty where none were recorded.
+    /// Recorded temperatures of the joints, °C, row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
     /// SHA-256 of the file, or of the numbers of a run in memory, in lower-case hexadecimal.
     pub sha256: String,
@@ -190,13 +190,13 @@ impl Run {
     ///
     /// # Panics
     ///
-    /// Panics where none were recorded.
+    /// Panics if none were recorded.
     #[must_use]
     pub fn temperature(&self, k: usize) -> &[f64] {
         &self.temperatures[k * self.joints..(k + 1) * self.joints]
     }
 
-    /// Returns the mean temperature of each joint over the samples, n, °C; `None` where none were
+    /// Returns the mean temperature of each joint over the samples, n, °C; `None` if none were
     /// recorded.
     #[must_use]
     pub fn mean_temperature(&self) -> Option<Vec<f64>> {

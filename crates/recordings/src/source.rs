@@ -34,7 +34,7 @@ pub struct ReadOptions {
 /// A source of recordings: a folder with an index ([`DataSet`](crate::DataSet)), or runs in memory
 /// ([`MemoryRuns`](crate::MemoryRuns)).
 ///
-/// A source lists its runs at once and reads the samples of a run when they are asked for.
+/// A source lists its runs at once and reads the samples of a run when they are requested.
 ///
 /// # Examples
 ///
@@ -61,7 +61,7 @@ pub trait RunSource: fmt::Debug + Send + Sync {
     ///
     /// # Panics
     ///
-    /// Panics where there is no run `index`.
+    /// Panics if there is no run `index`.
     fn run_name(&self, index: usize) -> PathBuf;
 
     /// Reads run `index`.
@@ -72,7 +72,7 @@ pub trait RunSource: fmt::Debug + Send + Sync {
     ///
     /// # Panics
     ///
-    /// Panics where there is no run `index`.
+    /// Panics if there is no run `index`.
     fn read(&self, index: usize, options: &ReadOptions) -> Result<Run, Vec<Defect>>;
 
     /// Returns notes about where recordings are: stored with the listed ones but not used, or

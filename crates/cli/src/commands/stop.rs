@@ -67,7 +67,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::claim(page)?;
     }
     let text =
-        reachtube_files::read_text(&args.brakes, "write the brakes, as docs/verify.md says")?;
+        reachtube_files::read_text(&args.brakes, "write the brakes as docs/verify.md describes")?;
     let opened = OpenedCheck::new(&args.model, None, Keep::Needed)?;
     let robot = opened.problem.robot();
     let brakes = Brakes::from_toml(&text, &args.brakes.display().to_string(), robot)?;

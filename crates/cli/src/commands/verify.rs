@@ -31,7 +31,7 @@ NAME_closest.csv. With a [stop] in the scenario, each link must stay clear until
 
 Exit codes: 0 safe, 1 unsafe, 2 error, 3 undecided.";
 
-/// How the names of closest motions end.
+/// Ending of the names of closest motions.
 const CLOSEST: &str = "_closest.csv";
 
 /// Decide whether the links stay clear of obstacles on every motion of a model

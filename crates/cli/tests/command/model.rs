@@ -79,7 +79,7 @@ fn the_same_choices_give_the_same_bytes() {
     }
     lab.run("model --settings arm/choices.toml --out again").exits(0);
     let read = |path: &str| std::fs::read_to_string(lab.path(path)).unwrap();
-    // Reasons are dropped where a value was edited: they may be about the value before.
+    // Reasons are dropped if a value was edited: they may be about the value before.
     let edited = read("arm/choices.toml").replace("held-out = [\"c\"]", "held-out = [\"b\"]");
     lab.write("edited.toml", edited);
     let run = lab.run("model --settings edited.toml --out other").exits(0);

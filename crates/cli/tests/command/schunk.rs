@@ -1,4 +1,4 @@
-//! The recordings of the paper's own robot, which are ignored unless asked for.
+//! The recordings of the paper's own robot, which are ignored unless requested.
 
 use std::time::{Duration, Instant};
 

@@ -36,8 +36,8 @@ fn a_stop_may_begin_at_any_sample() {
     fits("verify", &verify(&lab, "suites = [\"A\"]", &it, "--json").exits(3).json());
 }
 
-/// Joint 2 goes on for some time after a stop. Its link then touches this, which it does not reach
-/// on the motion until 0.2 s.
+/// Joint 2 continues for some time after a stop. Its link then touches this, which it does not
+/// reach on the motion until 0.2 s.
 const BEYOND: &str = "sphere = { centre = [0.479, -0.143, 1], radius = 0.01 }";
 
 #[test]

@@ -2,8 +2,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::condition::Condition;
 
-/// What is taken off the recorded input along the nominal motion, sample by sample, beyond what the
-/// model's own equations contain: friction and the weight of a payload.
+/// Torque subtracted from the recorded input along the nominal motion, sample by sample, beyond
+/// what the model's own equations contain: friction and the weight of a payload.
 ///
 /// At each sample the correction is evaluated at the nominal state, and the corrected input is held
 /// until the next sample. The reachable set is the model's, around this nominal motion.
@@ -23,8 +23,8 @@ pub struct InputCorrection {
     pub reference_temperatures: Option<Vec<f64>>,
 }
 
-/// The friction of one joint that is taken off the input. N in place of N m, m in place of rad for
-/// a prismatic joint.
+/// The friction of one joint that is subtracted from the input. N in place of N m, m in place of
+/// rad for a prismatic joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointCorrection {
@@ -61,8 +61,8 @@ impl InputCorrection {
         self.joints.iter().any(|joint| joint.warm_up != 0.0 || joint.warm_up_coulomb != 0.0)
     }
 
-    /// Returns the warmth of each joint in a condition, n: 0 where a temperature is needed and was
-    /// not recorded.
+    /// Returns the warmth of each joint in a condition, n: 0 if a temperature is needed and was not
+    /// recorded.
     #[must_use]
     pub(crate) fn warmth(&self, condition: &Condition) -> Vec<f64> {
         let n = self.joints.len();

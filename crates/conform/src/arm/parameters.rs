@@ -54,7 +54,7 @@ const WARMING: f64 = 10.0;
 impl ArmParameters {
     /// Lists the parameters of the groups that the robot has. Without a velocity limit, friction
     /// that may fall with speed must rise up to twice the highest speed of each joint in the
-    /// recordings. Warm-up counts temperatures above those asked for, or ln(run) without them.
+    /// recordings. Warm-up counts temperatures above the requested ones, or ln(run) without them.
     pub(super) fn new(arm: &Arm, setup: &Setup, asked: &Asked) -> Self {
         let robot = arm.robot();
         let mass_matrix = robot.mass_matrix(&arm.expansion_point.q);
@@ -99,7 +99,6 @@ impl ArmParameters {
         RisingFriction::new(fitted, [viscous.v1, viscous.v2, viscous.v3], limit)
     }
 
-    /// Returns the robot.
     fn robot(&self) -> &Robot {
         &self.arm.robot
     }

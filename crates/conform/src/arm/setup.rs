@@ -13,7 +13,7 @@ use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 
 impl Setup {
-    /// Makes the model of `robot` that `settings` ask for.
+    /// Makes the model of `robot` that `settings` select.
     ///
     /// # Errors
     ///

@@ -7,7 +7,7 @@ use reachtube_robot::Robot;
 use crate::data::settings::{Method, Settings};
 use crate::error::Result;
 
-/// Makes the model of `robot` that `settings` ask for.
+/// Makes the model of `robot` that `settings` select.
 ///
 /// # Errors
 ///

@@ -34,7 +34,7 @@ pub(crate) struct SampleSet<'a> {
     states: &'a [usize],
     /// For each set, the smallest first, the number of steps over which its disturbances are held.
     held: Vec<usize>,
-    /// The sets, which are made when they are first asked for.
+    /// The sets, which are made on first use.
     sets: Vec<Option<(Membership, MembershipWorkspace)>>,
 }
 
@@ -129,9 +129,9 @@ impl<'a> SampleSet<'a> {
     }
 
     /// Returns by which factor the set would have to grow for a point, in the projection and from
-    /// the set's centre, with the direction that shows it; `None` where it must not grow by more
-    /// than the factor 1 + `tolerance`. `None` also where the factor is surely below `known`,
-    /// which saves the search for it. The answer does not depend on the points before.
+    /// the set's centre, with the direction that shows it; `None` if it must not grow by more than
+    /// the factor 1 + `tolerance`. `None` also where the factor is surely below `known`, which
+    /// saves the search for it. The answer does not depend on the points before.
     pub(crate) fn growth(
         &mut self,
         d: &[f64],
@@ -160,7 +160,7 @@ impl<'a> SampleSet<'a> {
     }
 
     /// Returns by which factor the set itself would have to grow for a point, with the direction
-    /// that shows it; `None` where the point lies in it.
+    /// that shows it; `None` if the point lies in it.
     pub(crate) fn gauge(&mut self, d: &[f64], accuracy: f64) -> Option<(f64, Vec<f64>)> {
         let (set, work) = self.set(self.held.len() - 1);
         set.gauge(d, accuracy, work)

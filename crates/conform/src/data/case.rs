@@ -18,14 +18,14 @@ pub struct Case {
     /// The sample times.
     pub grid: Arc<TimeGrid>,
     /// The input u, row-major, samples x n, N m: the recorded one, less the correction of the model
-    /// where it has one. It is by definition what it is in double precision.
+    /// if it has one. It is by definition what it is in double precision.
     pub inputs: Arc<[f64]>,
     /// The nominal initial state, 2n: the suite's, or the run's own first state. It defines the
     /// nominal motion exactly as it is in double precision.
     pub start: Vec<f64>,
     /// The measured states.
     pub measured: Arc<Envelope>,
-    /// What friction may depend on.
+    /// The conditions that friction may depend on.
     pub condition: Condition,
 }
 

@@ -7,13 +7,12 @@ use serde::{Deserialize, Serialize};
 pub struct Condition {
     /// The run's place in the order of its suite, from 1.
     pub place: u64,
-    /// The mean temperature of each joint, n, °C, where it was recorded.
+    /// The mean temperature of each joint, n, °C, if it was recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperatures: Option<Vec<f64>>,
 }
 
 impl Condition {
-    /// Returns the condition of a run.
     pub(crate) fn of(place: u64, run: &Run) -> Self {
         Self { place, temperatures: run.mean_temperature() }
     }

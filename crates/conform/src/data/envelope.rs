@@ -48,7 +48,6 @@ impl Envelope {
         self.upper.is_empty()
     }
 
-    /// Returns the number of states.
     pub(crate) fn dimension(&self) -> usize {
         self.dimension
     }

@@ -1,4 +1,4 @@
-//! What a user should know about recordings, in words.
+//! Notes about recordings for the user.
 
 use reachtube_recordings::copies_note;
 
@@ -8,7 +8,7 @@ use crate::data::settings::NominalStart;
 use crate::data::setup::Setup;
 use crate::data::suite::Suite;
 
-/// Returns what a user should know about the recordings that were read.
+/// Returns notes for the user about the recordings that were read.
 pub(super) fn recording_notes(
     setup: &Setup,
     origin: &Origin,
@@ -55,7 +55,7 @@ fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
     notes
 }
 
-/// Says where friction depends on a temperature that a recording does not have.
+/// Notes recordings without the temperature that friction depends on.
 fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
     let with: usize = recordings.suites.iter().map(|s| s.totals.with_temperature()).sum();
     let without = recordings.run_count() - with;

@@ -1,4 +1,4 @@
-//! Where the recordings of a problem come from.
+//! The origin of the recordings of a problem.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use reachtube_recordings::{RunEntry, RunSource};
 
-/// Where recordings come from.
+/// The origin of recordings.
 #[derive(Debug, Clone)]
 pub(crate) enum Origin {
     /// A source, from which they can be read again.

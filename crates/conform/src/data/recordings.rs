@@ -13,9 +13,9 @@ const LISTED_BELOW: usize = 10_000;
 /// The suites of a source, read once, checked and folded.
 #[derive(Debug)]
 pub struct Recordings {
-    /// The suites, in the order asked for.
+    /// The suites, in the requested order.
     pub suites: Vec<Suite>,
-    /// What a user should know about the data, in words.
+    /// Notes about the data for the user.
     pub notes: Vec<String>,
     /// The root of the Merkle tree over the recordings' entries, in lower-case hexadecimal.
     pub root: String,
@@ -88,7 +88,7 @@ impl Recordings {
     }
 }
 
-/// Returns what a user should know about the choice of suites and about the source.
+/// Returns notes for the user about the choice of suites and about the source.
 fn index_notes(source: &dyn RunSource, chosen: &[SuiteEntry]) -> Vec<String> {
     let (used, all) = (chosen.iter().map(|entry| entry.runs.len()).sum::<usize>(), source.runs());
     let mut notes = Vec::new();

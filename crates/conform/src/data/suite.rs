@@ -21,8 +21,8 @@ use crate::error::{Error, Result as AnyResult};
 pub struct Suite {
     /// The suite's name and runs.
     pub entry: SuiteEntry,
-    /// What was read of each run, in the order of `entry.runs`: of all runs of a source. A fold of
-    /// many runs keeps 256 of them, as random as their SHA-256.
+    /// Summaries of the runs, in the order of `entry.runs`: of all runs of a source. A fold of many
+    /// runs keeps 256 of them, as random as their SHA-256.
     pub runs: Vec<RunSummary>,
     /// Totals of all runs.
     pub(crate) totals: Totals,
@@ -37,7 +37,6 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// Returns the number of runs.
     #[must_use]
     pub(crate) fn run_count(&self) -> usize {
         self.totals.count

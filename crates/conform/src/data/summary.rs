@@ -13,7 +13,7 @@ use crate::data::stored::condition;
 /// drawn from a larger suite.
 pub(crate) const SAMPLE: usize = 256;
 
-/// What is kept of every run.
+/// Summary of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunSummary {
     /// Index in the source.
@@ -29,9 +29,9 @@ pub struct RunSummary {
     pub grid: Arc<TimeGrid>,
     /// The first state, 2n.
     pub start: Vec<f64>,
-    /// Some of its states; none where the run is not drawn from a suite of more than 256.
+    /// Some of its states; none if the run is not drawn from a suite of more than 256.
     pub(crate) marks: Marks,
-    /// What friction may depend on.
+    /// The conditions that friction may depend on.
     #[serde(with = "condition")]
     pub condition: Condition,
     /// SHA-256 of the recording.
@@ -46,7 +46,7 @@ pub struct RunSummary {
     /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it, and at least what
     /// was measured before a filter.
     pub noise: Option<Vec<f64>>,
-    /// What a user should know about the run.
+    /// Notes about the run for the user.
     pub notes: Vec<String>,
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct Totals {
     pub(crate) starts: Vec<ExactSum>,
     /// The lowest and the highest of the first states, 2n.
     pub(crate) start_bounds: Vec<[f64; 2]>,
-    /// The sums of the temperatures, n, over the runs that have them; empty where none has.
+    /// The sums of the temperatures, n, over the runs that have them; empty if none has.
     #[serde(with = "sums")]
     pub(crate) temperatures: Vec<ExactSum>,
     /// The notes about the runs that come first in the source.

@@ -21,14 +21,14 @@ pub(crate) struct Tree {
     filled: BTreeMap<u64, (u8, Hash)>,
 }
 
-/// What the leaf of a recording says besides its place.
+/// Content of the leaf of a recording besides its place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Leaf<'a> {
     /// The file.
     pub file: &'a str,
     /// The suite.
     pub suite: &'a str,
-    /// SHA-256 of the recording, in hexadecimal; empty where it has defects.
+    /// SHA-256 of the recording, in hexadecimal; empty if it has defects.
     pub sha256: &'a str,
 }
 

@@ -41,7 +41,6 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    /// Returns the samples that are rows.
     pub(crate) fn samples(&self, stride: usize) -> impl Iterator<Item = usize> + use<> {
         (0..self.case.measured.len()).step_by(stride)
     }

@@ -23,7 +23,7 @@ use crate::sets::UncertaintySets;
 /// Track, sample among the rows, state, side.
 pub(crate) type StepRow = (usize, usize, usize, Side);
 
-/// What does not change during a fit.
+/// The constants of a fit.
 #[derive(Clone)]
 pub(crate) struct FitTask<'a> {
     pub parameters: &'a dyn Parameters,
@@ -40,9 +40,9 @@ pub(crate) struct FitTask<'a> {
 
 /// The model of one choice of the parameters beside the recordings.
 pub(crate) struct FitModel {
-    /// For each grid, the entries of E_k and R_k at the samples that are rows, as in a [`Block`].
+    /// For each grid, the entries of E_k and R_k at the samples that have rows, as in a [`Block`].
     pub coefficients: Vec<Arc<Vec<f64>>>,
-    /// For each track, the nominal motion at the samples that are rows, samples x 2n; empty for a
+    /// For each track, the nominal motion at the samples that have rows, samples x 2n; empty for a
     /// track that was not selected.
     pub motions: Vec<Vec<f64>>,
 }
@@ -66,7 +66,6 @@ pub(crate) struct Smallest {
 }
 
 impl FitTask<'_> {
-    /// Returns the number of joints.
     pub(crate) fn joints(&self) -> usize {
         self.weights.len() / 2
     }
@@ -128,7 +127,6 @@ impl FitTask<'_> {
         Ok(motion(dynamics, case, Some(&steps[*grid]), compensation)?.states)
     }
 
-    /// Returns a motion at the samples that are rows.
     pub(crate) fn rows_of(&self, motion: &[f64]) -> Vec<f64> {
         motion.chunks_exact(2 * self.joints()).step_by(self.stride).flatten().copied().collect()
     }
@@ -222,7 +220,7 @@ impl FitTask<'_> {
     }
 
     /// Returns the cost of the smallest sets of all tracks at every sample; `None` if a nominal
-    /// motion runs away.
+    /// motion diverges.
     ///
     /// # Errors
     ///

@@ -10,7 +10,7 @@ pub enum Group {
     /// Viscous friction v1 of each joint.
     Viscous,
     /// Quadratic and cubic viscous friction v2 and v3 of each joint. The truncation error of the
-    /// model is taken off the input along the nominal motion.
+    /// model is subtracted from the input along the nominal motion.
     Cubic,
     /// Coulomb friction of each joint, by quadrant where the quadrants differ, along the nominal
     /// motion.

@@ -26,7 +26,7 @@ pub(crate) struct PullChoice {
     /// How the model that was fitted without each motion carries over to it.
     pub left_out: Vec<UnseenMotion>,
     /// The rows of each motion that lie beyond the sets that were found without it; `None` if a
-    /// nominal motion runs away.
+    /// nominal motion diverges.
     pub missing: Option<Vec<Missing>>,
     /// How the identified model carries over to each motion.
     pub identified: Vec<UnseenMotion>,
@@ -37,7 +37,6 @@ pub(crate) struct PullChoice {
 }
 
 impl PullChoice {
-    /// Returns the groups that are fitted.
     pub(crate) fn groups(&self, parameters: &dyn Parameters) -> Vec<Group> {
         let all = parameters.groups().into_iter();
         all.filter(|group| !self.dropped.contains(group)).collect()
@@ -206,7 +205,7 @@ impl<'a> Fold<'a> {
             free: self.own.parameters.except(held),
             effort: SearchEffort::QUICK,
         };
-        // Without a group a nominal motion may run away until the others are fitted again.
+        // Without a group a nominal motion may diverge until the others are fitted again.
         let start = self.own.parameters.start();
         let found = match self.own.search(&wanted, from) {
             Err(Error::RunsAway { .. }) => self.own.search(&wanted, &start),

@@ -16,7 +16,7 @@ pub struct FitRecord {
     pub identified_cost: f64,
     /// Cost of the smallest sets of the fitted model.
     pub cost: f64,
-    /// What each group is worth. These costs, and the costs without each motion, are approximate
+    /// The gain of each group. These costs, and the costs without each motion, are approximate
     /// where the times between samples differ.
     pub groups: Vec<GroupCost>,
     /// Groups that were not fitted, because fits without them carry over better to motions that are
@@ -41,7 +41,7 @@ pub struct FitRecord {
     pub(crate) pulls: Vec<PullCost>,
     /// The parameters.
     pub parameters: Vec<FittedParameter>,
-    /// How well both models predict the input, joint by joint.
+    /// The errors of the input that both models predict, one per joint.
     pub torque: Vec<TorquePrediction>,
 }
 
@@ -50,15 +50,15 @@ fn taken() -> bool {
     true
 }
 
-/// What a group of parameters is worth.
+/// Gain of a group of parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupCost {
     /// The group.
     pub group: Group,
     /// Cost of the sets with this group at its identified values and the others fitted again by a
-    /// quick search, which may end somewhat above their optimum; `None` if a nominal motion runs
-    /// away.
+    /// quick search, which may end somewhat above their optimum; `None` if a nominal motion
+    /// diverges.
     pub cost_without: Option<f64>,
 }
 
@@ -68,8 +68,8 @@ pub struct GroupCost {
 pub struct UnseenMotion {
     /// The motion.
     pub motion: String,
-    /// Cost of the sets of all motions for the nominal model that was fitted without it; `None`
-    /// if a nominal motion runs away.
+    /// Cost of the sets of all motions for the nominal model that was fitted without it; `None` if
+    /// a nominal motion diverges.
     pub cost: Option<f64>,
     /// Cost of the sets of the other motions for that model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -96,7 +96,7 @@ pub struct UnseenMotion {
 }
 
 impl UnseenMotion {
-    /// Makes the record of a motion without which a nominal motion runs away.
+    /// Makes the record of a motion without which a nominal motion diverges.
     pub(crate) fn runs_away(motion: String) -> Self {
         Self { motion, ..Self::default() }
     }
@@ -118,7 +118,7 @@ pub(crate) struct PullCost {
     /// The weight.
     pub pull: f64,
     /// The mean cost of the sets of all motions over the motions left out; `None` if a nominal
-    /// motion runs away.
+    /// motion diverges.
     pub cost: Option<f64>,
     /// The mean cost, over the motions left out, of the sets that were found without a motion and
     /// have grown until they enclose it; `None` if no factor suffices for one of them.
@@ -154,8 +154,8 @@ impl PullCost {
 }
 
 impl FitRecord {
-    /// Returns the mean cost over the motions left out, with the weight that was chosen; `None`
-    /// if a nominal motion runs away.
+    /// Returns the mean cost over the motions left out, with the weight that was chosen; `None` if
+    /// a nominal motion diverges.
     #[must_use]
     pub fn left_out_mean(&self) -> Option<f64> {
         mean_of(&self.leave_one_out, |left| left.cost)
@@ -221,7 +221,7 @@ pub struct FittedParameter {
     pub standard_error: Option<f64>,
     /// The fitted value.
     pub fitted: f64,
-    /// What the identified value is multiplied by, where the parameter is a factor.
+    /// The factor of the identified value, if the parameter is a factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factor: Option<f64>,
 }

@@ -10,7 +10,7 @@ const FIRST_TRUST: f64 = 0.5;
 /// The search ends when the trust region is smaller than this.
 const LEAST_TRUST: f64 = 2e-3;
 
-/// What a search found.
+/// The result of a search.
 #[derive(Debug, Clone)]
 pub(crate) struct FoundNumbers {
     /// The numbers of the parameters.
@@ -21,7 +21,7 @@ pub(crate) struct FoundNumbers {
     pub value: f64,
 }
 
-/// What is searched for.
+/// The goal of a search.
 #[derive(Debug, Clone)]
 pub(crate) struct Wanted {
     /// The motion that is not looked at.

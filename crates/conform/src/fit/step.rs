@@ -74,7 +74,7 @@ pub(crate) struct StepProgram<'a> {
 
 /// What rows reach at some unknowns, the numbers of the parameters included.
 struct Reach {
-    /// How far each nominal motion moves at the samples that are rows, samples x 2n; empty for
+    /// How far each nominal motion moves at the samples that have rows, samples x 2n; empty for
     /// other tracks.
     motions: Vec<Vec<f64>>,
     /// For each grid samples x 2n pairs: what the centres give to the upper side and take from the

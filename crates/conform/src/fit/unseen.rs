@@ -1,4 +1,4 @@
-//! How a nominal model and its sets carry over to a motion that neither has seen.
+//! Evaluation of a nominal model and its sets on a motion that was left out of both.
 
 use std::slice::from_ref;
 
@@ -19,12 +19,12 @@ pub(crate) struct Unseen<'a> {
 
 impl Unseen<'_> {
     /// Finds the sets of the other motions for `numbers`, and compares the motion with them. Also
-    /// returns the rows of the motion that lie beyond these sets; `None` if a nominal motion runs
-    /// away.
+    /// returns the rows of the motion that lie beyond these sets; `None` if a nominal motion
+    /// diverges.
     ///
     /// # Errors
     ///
-    /// As [`FitTask::model`], but for a nominal motion that runs away; as [`Program::solve`].
+    /// As [`FitTask::model`], but for a nominal motion that diverges; as [`Program::solve`].
     pub(crate) fn compare(&self, numbers: &[f64]) -> Result<(UnseenMotion, Option<Missing>)> {
         let Self { whole, motion } = self;
         let name = whole.data.motions[*motion].clone();

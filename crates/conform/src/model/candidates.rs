@@ -11,7 +11,7 @@ use crate::model::records::DataRecord;
 use crate::next_motion::calibration::Calibration;
 use crate::sets::UncertaintySets;
 
-/// What a model file says of its calibration and its sets.
+/// Calibration and sets of a model file.
 #[derive(Deserialize)]
 struct Candidate {
     format: String,

@@ -25,7 +25,7 @@ pub(crate) struct OtherData {
     pub starts_alike: bool,
 }
 
-/// A recording whose content is not the model's.
+/// A recording whose content differs from the model's record of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Replaced {
     /// Path in the data set.

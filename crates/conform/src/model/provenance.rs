@@ -1,4 +1,4 @@
-//! What an answer is about.
+//! The origin of an answer.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use crate::data::settings::Settings;
 use crate::model::file::Model;
 use crate::model::records::DataRecord;
 
-/// What an answer is about: the model, the settings in force, and each recording by its digest.
+/// The origin of an answer: the model, the settings in force, and each recording by its digest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Provenance {
     /// Name and version of the program.

@@ -8,7 +8,7 @@ use crate::data::problem::Problem;
 use crate::model::file::Model;
 use crate::model::provenance::Provenance;
 
-/// What the field `format` of the file says.
+/// Value of the field `format` of the file.
 const FORMAT: &str = "reachtube-reach";
 
 /// The version of the format.

@@ -1,4 +1,4 @@
-//! Whether a model says anything, and how logs became its recordings.
+//! Usefulness of a model, and preparation of its logs.
 
 use reachtube_recordings::{Preparation, Torque};
 

@@ -24,7 +24,7 @@ pub(crate) struct Delayed {
 }
 
 impl Delayed {
-    /// Returns `None` where the recorded torques contain the motors' inertia.
+    /// Returns `None` if the recorded torques contain the motors' inertia.
     pub(crate) fn new(robot: &Robot, torque: Torque, step: f64) -> Option<Self> {
         let inertia: Vec<f64> = robot.joints().iter().map(|joint| joint.armature).collect();
         if torque != Torque::Link || inertia.iter().all(|inertia| *inertia == 0.0) {

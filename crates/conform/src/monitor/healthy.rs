@@ -14,7 +14,7 @@ const MARGIN: f64 = 1.5;
 #[derive(Debug, Clone, PartialEq)]
 pub struct HealthyMotion {
     pub(crate) shape: Shape,
-    /// The ranges of the recordings that shape; `None` where a number was never known.
+    /// The ranges of the recordings that shape; `None` if a number was never known.
     pub(crate) ranges: Vec<Option<Range>>,
     /// The largest factors that a scored recording needs, at least 1: for sudden torques, and for
     /// drags and the payload.
@@ -30,15 +30,15 @@ impl HealthyMotion {
     ///
     /// 2/(n + 1) for the n recordings that scale the ranges by two factors, on average over the
     /// draw of these and of the next one, if they are exchangeable: their order does not matter.
-    /// The margin is room beyond that, of which nothing is proved.
+    /// The margin beyond that is not proved.
     #[must_use]
     pub fn bound(&self) -> f64 {
         (2.0 / (self.scored as f64 + 1.0)).min(1.0)
     }
 
     /// Returns the least and the largest value without an alarm: of sudden torques of the joints
-    /// \[N m\], then of their drags \[N m\], then of the payload \[kg\]; `None` where the
-    /// recordings move a joint too little. 2n + 1.
+    /// \[N m\], then of their drags \[N m\], then of the payload \[kg\]; `None` if the recordings
+    /// move a joint too little. 2n + 1.
     #[must_use]
     pub fn ranges(&self) -> Vec<Option<[f64; 2]>> {
         let joints = self.ranges.len() / 2;

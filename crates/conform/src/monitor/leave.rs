@@ -18,8 +18,8 @@ pub struct Leave {
     pub side: Side,
     /// The measured value, rad or rad/s.
     pub value: f64,
-    /// How far outside the reachable set, rad or rad/s; an upper bound, infinite where the nominal
-    /// motion ran away.
+    /// How far outside the reachable set, rad or rad/s; an upper bound, infinite if the nominal
+    /// motion diverged.
     pub excess: f64,
     /// Radius of the reachable set there with V, rad or rad/s.
     pub radius: f64,

@@ -17,7 +17,7 @@ pub(crate) struct LiveNominal {
 }
 
 impl LiveNominal {
-    /// Prepares the correction of a model; `None` where its input is the recorded one.
+    /// Prepares the correction of a model; `None` if its input is the recorded one.
     ///
     /// # Errors
     ///

@@ -23,7 +23,7 @@ pub(crate) struct Residual {
     /// A robot that only has a mass of 1 kg at its tip.
     unit_payload: Robot,
     workspace: Workspace<f64>,
-    /// Reciprocal period of the motor's angle over the joint's, n; 0 where no ripple is expected.
+    /// Reciprocal period of the motor's angle over the joint's, n; 0 if no ripple is expected.
     ratios: Vec<f64>,
     step: f64,
     /// Steps of half the time of the difference.

@@ -39,14 +39,14 @@ pub(crate) struct Statistics {
     moved: Vec<usize>,
     /// Means over the time before, n.
     means: Vec<Parts>,
-    /// What is above the means, n; `None` where a joint has not moved for long enough.
+    /// What is above the means, n; `None` if a joint has not moved for long enough.
     pub above: Vec<Option<Parts>>,
     /// Sums for each joint, by which its drag is estimated: of 1, of the torque along the motion,
     /// and of the weight along the motion, n.
     sums: Vec<Parts>,
     /// The sums of the squared weight, and of the weight times the torque.
     payload: [f64; 2],
-    /// N m and kg; `None` where there is too little motion. 2n + 1.
+    /// N m and kg; `None` if there is too little motion. 2n + 1.
     pub values: Vec<Option<f64>>,
 }
 
@@ -74,7 +74,6 @@ impl Statistics {
         self.values.fill(None);
     }
 
-    /// Returns whether a joint moves.
     pub(crate) fn is_moving(&self, joint: usize) -> bool {
         self.moved[joint] > 0
     }

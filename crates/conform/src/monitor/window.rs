@@ -13,7 +13,7 @@ use crate::tube::grids::Grid;
 use crate::tube::rows::excesses;
 use crate::tube::strand::Strand;
 
-/// What all windows have in common.
+/// Data common to all windows.
 #[derive(Debug)]
 pub(crate) struct Sets {
     pub grid: Grid,
@@ -37,7 +37,7 @@ pub(crate) struct Window {
     nominal: Solution,
     /// The nominal motion along which the input is corrected, 2n, and its next state.
     corrected: [Vec<f64>; 2],
-    /// Whether that motion ran away.
+    /// Whether that motion diverged.
     runs_away: bool,
     /// The input of the step, n.
     input: Vec<f64>,

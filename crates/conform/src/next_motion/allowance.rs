@@ -28,15 +28,15 @@ impl Program<'_> {
     }
 }
 
-/// What motions that are left out ask of wider sets.
+/// Growth of the sets for motions that are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowanceNeeded {
     /// Radii that may be added to X0 and U, 3n. The radii of U are in proportion to the error
     /// of the input, and the radii of X0 to X0; these are 0 where the noise of the sensors limits
     /// X0.
     pub shape: Vec<f64>,
-    /// The factor of `shape`, for each motion, with which the sets of the others enclose it: 0
-    /// where they do without. `None` if no factor suffices.
+    /// The factor of `shape`, for each motion, with which the sets of the others enclose it: 0 if
+    /// they do without. `None` if no factor suffices.
     pub factors: Vec<Option<f64>>,
 }
 

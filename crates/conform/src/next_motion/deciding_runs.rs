@@ -21,9 +21,9 @@ pub struct DecidingRuns {
     pub count: usize,
     /// The ten that decide the most rows, the first first.
     pub most: Vec<DecidingRun>,
-    /// About what the smallest sets would cost without those ten, by programs over the samples
-    /// that stay in memory of each run. `None` for a model that is not linear, for calibrated
-    /// sets, where the ten are half of all runs or more, or where a suite has more than 256 runs.
+    /// About what the smallest sets would cost without those ten, by programs over the samples that
+    /// stay in memory of each run. `None` for a model that is not linear, for calibrated sets,
+    /// where the ten are half of all runs or more, or if a suite has more than 256 runs.
     pub cost_without: Option<f64>,
 }
 

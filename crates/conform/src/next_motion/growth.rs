@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 
-/// What would have to grow, alone and by how much, so that a model encloses recordings that leave
-/// its sets. Not proved: to rounding, with the centres where they are.
+/// Factors by which each set alone must grow, so that a model encloses recordings that leave its
+/// sets. Not proved: to rounding, with the centres where they are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Growth {
     /// Factor of all radii of X0, for a linear model. `None` if no factor suffices.

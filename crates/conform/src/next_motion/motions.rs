@@ -105,7 +105,7 @@ impl<'a> Motions<'a> {
             ""
         } else {
             "; runs.csv has no column motion, so each suite counts as a motion of its own, which \
-             is too optimistic where suites share one"
+             is too optimistic if suites share one"
         }
     }
 }

@@ -16,8 +16,8 @@ const SEED: u64 = 1;
 /// With fewer motions the draws are so few that an interval means nothing.
 pub(crate) const FEWEST_MOTIONS: usize = 4;
 
-/// How often recordings that were held out leave the sets. A description of these recordings with
-/// the spread over their motions, and no guarantee for others.
+/// Rates at which held-out recordings leave the sets. A description of these recordings with the
+/// spread over their motions, and no guarantee for others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Rates {
     /// Number of motions.
@@ -28,7 +28,7 @@ pub struct Rates {
     pub suites: Rate,
     /// Level of the intervals.
     pub level: f64,
-    /// How often motions were drawn with replacement for the intervals.
+    /// Number of bootstrap samples for the intervals.
     pub resamples: usize,
     /// How far the rates carry: a description.
     pub kind: TrustKind,

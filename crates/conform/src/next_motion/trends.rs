@@ -62,7 +62,7 @@ fn of_suite(suite: &Suite, joints: usize) -> Vec<Trend> {
     (0..joints).filter_map(of_joint).collect()
 }
 
-/// Returns Spearman's correlation of values with their order; 0 where they are all the same.
+/// Returns Spearman's correlation of values with their order; 0 if they are all the same.
 fn rank_correlation(values: &[f64]) -> f64 {
     // Equal values share the mean of their ranks.
     let rank = |value: &f64| {

@@ -2,8 +2,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::record::UnseenMotion;
 
-/// The sets of all motions but one, and how that one lies to them. A description, to rounding:
-/// nothing of it is proved, and it bounds no probability.
+/// The sets of all motions but one, and how that one lies to them. A description, to rounding: it
+/// is not proved, and bounds no probability.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LeftOut {

@@ -18,8 +18,8 @@ use crate::error::{Error, Result};
 use crate::nominal::motion::motion_until;
 
 impl Problem {
-    /// Returns the cases of all suites, in their order. They are made when first asked for and
-    /// stay in memory.
+    /// Returns the cases of all suites, in their order. They are made on first use and stay in
+    /// memory.
     ///
     /// # Errors
     ///
@@ -116,11 +116,11 @@ impl Problem {
     }
 
     /// Hands each case of suite `index` to `visit` as [`cases_of`](Self::cases_of) does, and where
-    /// its nominal motion runs away, if it does.
+    /// its nominal motion diverges, if it does.
     ///
     /// # Errors
     ///
-    /// As [`cases_of`](Self::cases_of), but no error where a linear model runs away.
+    /// As [`cases_of`](Self::cases_of), but no error if a linear model diverges.
     pub(crate) fn cases_until<T: Send>(
         &self,
         index: usize,
@@ -141,7 +141,7 @@ impl Problem {
         }
     }
 
-    /// Takes the correction off the inputs of a case, up to where its nominal motion runs away.
+    /// Takes the correction off the inputs of a case, up to where its nominal motion diverges.
     fn corrected_until(&self, case: Case) -> Result<(Case, Option<Runaway>)> {
         let Setup { drive, dynamics, .. } = self.setup();
         let compensation = drive.compensation(dynamics, &case.condition, None)?;

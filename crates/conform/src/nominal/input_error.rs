@@ -1,4 +1,4 @@
-//! How well a model predicts the input along the recordings.
+//! Error of the input that a model predicts along the recordings.
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;

@@ -1,4 +1,4 @@
-//! The nominal motion of a case, and what is taken off its input along it.
+//! The nominal motion of a case, and what is subtracted from its input along it.
 
 mod cases;
 pub(crate) mod input_error;

@@ -36,8 +36,8 @@ pub(crate) fn motion(
     }
 }
 
-/// Simulates the nominal motion of a case as [`motion`] does. If the motion of a linear model runs
-/// away, returns where; from there on its states and inputs are 0.
+/// Simulates the nominal motion of a case as [`motion`] does. If the motion of a linear model
+/// diverges, returns where; from there on its states and inputs are 0.
 ///
 /// # Errors
 ///

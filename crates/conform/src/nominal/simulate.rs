@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 /// Bound of h |A| for a Runge-Kutta step of length h: its error is then below 1e-7 of the change.
 pub(crate) const STEP_NORM: f64 = 0.1;
 
-/// Beyond this |x| a motion counts as having run away, rad or rad/s.
+/// Beyond this |x| a motion counts as having diverged, rad or rad/s.
 pub(crate) const BOUND: f64 = 1e4;
 
 /// Simulates a model along a case from its start under its inputs, without any uncertainty: samples
@@ -33,7 +33,7 @@ pub(crate) fn substeps(slopes: &mut dyn Slopes, case: &Case, start: &[f64]) -> u
     (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
 }
 
-/// Returns the error that the model runs away along a case after `time` (s).
+/// Returns the error that the model diverges along a case after `time` (s).
 pub(crate) fn runs_away(case: &Case, time: f64) -> Error {
     Error::RunsAway { case: case.name.clone(), time }
 }
@@ -42,7 +42,7 @@ pub(crate) fn runs_away(case: &Case, time: f64) -> Error {
 ///
 /// # Errors
 ///
-/// The time, s, up to which the model could be followed, where it runs away.
+/// The time, s, up to which the model could be followed, where it diverges.
 pub(crate) fn simulate(
     system: &dyn Nonlinear,
     times: &[f64],

@@ -102,7 +102,7 @@ impl<'a> Evidence<'a> {
     /// Returns the part of the input that the motion does not explain under a hypothesis: the mean
     /// over the joints of Σ (u - u_m)² by Σ (u² + u_m²), where u is the recorded input and u_m the
     /// one that the robot needs for the recorded motion. It is 0 for equal inputs, about 1 for
-    /// unrelated ones and 2 for opposite ones. `None` where the runs are too short for it, or too
+    /// unrelated ones and 2 for opposite ones. `None` if the runs are too short for it, or too
     /// short for the lag.
     pub(super) fn unexplained(&self, hypothesis: &Hypothesis) -> Option<f64> {
         part(&self.misses(hypothesis))

@@ -35,7 +35,7 @@ impl NominalFit {
     ///
     /// # Errors
     ///
-    /// As [`Problem::run`]; a nominal motion that runs away.
+    /// As [`Problem::run`]; a nominal motion that diverges.
     pub(crate) fn new(problem: &Problem) -> Result<Self> {
         let n = problem.joints();
         let mut all = Sums::zero(n);

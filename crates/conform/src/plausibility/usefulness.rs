@@ -20,8 +20,8 @@ const PART_OF_MOTION: f64 = 0.5;
 /// Inputs and widths below this, N m, rad or rad/s, are rounding.
 const SMALLEST: f64 = 1e-6;
 
-/// How much the sets say about the motion of each joint. Sets that were proved to enclose every
-/// recording may be so wide that nothing follows from them; the model is then vacuous.
+/// Width of the sets beside the motion of each joint. Sets that were proved to enclose every
+/// recording may be so wide that they imply nothing; the model is then vacuous.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Usefulness {
@@ -38,7 +38,7 @@ pub struct Usefulness {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JointWidth {
-    /// Half the width of the set with V, rad (m); `None` where the reachable set was lost.
+    /// Half the width of the set with V, rad (m); `None` if the reachable set was lost.
     pub half_width: Option<f64>,
     /// The root mean square over the suites of the joint's largest distance from its start, and at
     /// least 5 % of its range over all recordings, rad (m).

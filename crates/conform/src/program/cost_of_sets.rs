@@ -1,4 +1,4 @@
-//! What some sets cost in a program.
+//! Cost of sets in a program.
 
 use crate::program::program::Program;
 use crate::sets::UncertaintySets;

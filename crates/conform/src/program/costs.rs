@@ -1,4 +1,4 @@
-//! What the widths of the reachable sets cost.
+//! Cost of the widths of the reachable sets.
 
 use std::collections::HashMap;
 

@@ -17,7 +17,7 @@ pub(crate) struct Limits {
 }
 
 impl Limits {
-    /// Returns the limit of radius `j` of (X0, U); infinite where there is none.
+    /// Returns the limit of radius `j` of (X0, U); infinite if there is none.
     pub(crate) fn of_start(&self, j: usize) -> f64 {
         self.start.as_ref().and_then(|start| start.get(j)).copied().unwrap_or(f64::INFINITY)
     }
@@ -116,7 +116,7 @@ impl Layout {
         centres.chain(radii).chain(noise).take(self.cost.len()).copied().collect()
     }
 
-    /// Returns the largest that the unknown of column `j` may be; infinite where it has no limit.
+    /// Returns the largest that the unknown of column `j` may be; infinite if it has no limit.
     pub(crate) fn limit_of(&self, limits: &Limits, j: usize) -> f64 {
         let (width, centres) = (self.shape.radii(), self.centres());
         match if j < centres { j } else { j - centres } {

@@ -97,8 +97,8 @@ impl Program<'_> {
         program
     }
 
-    /// Returns the rows that touch the reach of the sets where they have one. At a first sample
-    /// that no recording leaves, all rows touch a set without width, and none decides anything.
+    /// Returns the rows that touch the reach of the sets if they have one. At a first sample that
+    /// no recording leaves, all rows touch a set without width, and none decides anything.
     #[must_use]
     pub(crate) fn deciding(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
         let radius = self.unknowns(sets).radius;
@@ -159,7 +159,7 @@ impl Program<'_> {
         row.excess > SAME_STATE && self.is_violated(row)
     }
 
-    /// Returns the factor of some radii with which the rows of some samples hold, up to rounding;
+    /// Returns the factor of given radii with which the rows of given samples hold, up to rounding;
     /// `None` if no factor suffices.
     fn factor(
         &self,

@@ -72,7 +72,7 @@ pub(crate) struct Program<'a> {
     pub(crate) cuts: Vec<Cut>,
 }
 
-/// What the solver found.
+/// The answer of the solver.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Solution {
     /// The sets; their rows hold to the solver's tolerance only.

@@ -23,7 +23,7 @@ impl Program<'_> {
     }
 
     /// The sets with radii that are larger by terms of the same cost, but for radii that have a
-    /// limit, so that every row holds; infinite where the radii without a limit are in no row.
+    /// limit, so that every row holds; infinite if the radii without a limit are in no row.
     fn widened(&self, sets: &UncertaintySets) -> UncertaintySets {
         let unknowns = self.unknowns(sets);
         let largest = self.cost.iter().copied().fold(0.0, f64::max);

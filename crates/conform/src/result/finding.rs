@@ -19,8 +19,8 @@ pub enum Severity {
     Failure,
 }
 
-/// One statement about an answer: a fact, a warning or a failure, with its numbers and, where one
-/// is known, a remedy.
+/// One statement about an answer: a fact, a warning or a failure, with its numbers and, if one is
+/// known, a remedy.
 ///
 /// # Examples
 ///
@@ -59,7 +59,7 @@ pub struct Finding {
     pub numbers: BTreeMap<String, f64>,
     /// The finding as a sentence, without the remedy.
     pub text: String,
-    /// What to do.
+    /// The remedy.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remedy: Option<Remedy>,
 }

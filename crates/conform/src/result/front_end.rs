@@ -18,7 +18,7 @@ pub enum FrontEnd {
 pub struct Setting {
     /// Its name, as on the command line but without dashes in front.
     pub name: &'static str,
-    /// Its value; empty where the user has to choose one.
+    /// Its value; empty if the user has to choose one.
     pub value: String,
 }
 

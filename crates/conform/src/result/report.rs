@@ -51,7 +51,6 @@ impl fmt::Display for Report {
 }
 
 impl Section {
-    /// Returns whether the section is empty.
     pub(crate) fn is_empty(&self) -> bool {
         let Self { findings, tables, facts, .. } = self;
         findings.is_empty() && tables.is_empty() && facts.is_empty()

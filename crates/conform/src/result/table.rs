@@ -6,7 +6,7 @@ use serde::Serialize;
 /// A table of texts, of which the first column names the row.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Table {
-    /// What the table shows; empty where the text around it says so.
+    /// What the table shows; empty if the text around it says so.
     pub title: String,
     /// The names of the columns.
     pub header: Vec<String>,

@@ -18,7 +18,7 @@ pub(crate) struct Found {
     pub cost_of_samples: f64,
     /// No sets cost less, for a linear model.
     pub lower_bound: Option<f64>,
-    /// How far the cost may be above the least, relative to the bound, for a linear model.
+    /// Gap between cost and lower bound, relative to the lower bound, for a linear model.
     pub optimality_gap: Option<f64>,
     /// The paper's sum (21), for a linear model.
     pub paper_cost: Option<f64>,
@@ -57,13 +57,13 @@ impl Deciding {
     }
 }
 
-/// How the sets of a model that is not linear were found.
+/// The search for the sets of a model that is not linear.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SearchSummary {
     /// Number of linearisations, each with its program.
     pub rounds: usize,
-    /// How often the reachable sets of all suites were computed.
+    /// Number of times that the reachable sets of all suites were computed.
     pub reachable_sets: usize,
     /// The cost of the linearised sets, Σ_k w_k Σ_i s_i 2 (R_k r)_i, which the programs minimise.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -18,7 +18,7 @@ pub(crate) struct Direction {
     pub direction: Vec<f64>,
     /// The recorded point that is furthest along it.
     pub along: Along,
-    /// max lᵀ x over the last computed set, without the noise set; 0 where the plant is exact.
+    /// max lᵀ x over the last computed set, without the noise set; 0 if the plant is exact.
     pub reach: f64,
     /// How much further that set reaches than its linearisation, once that is known.
     pub further: Option<f64>,

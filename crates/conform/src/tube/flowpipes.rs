@@ -13,7 +13,7 @@ use crate::tube::strand::Strand;
 /// lost: with 14 a step takes four times as long as with 8, with 18 a hundred times.
 const VERTEX_VARIABLES: [usize; 3] = [8, 14, 18];
 
-/// How hard to try where a set is lost.
+/// Effort after a set is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Effort {
     /// Once: for candidates.

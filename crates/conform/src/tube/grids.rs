@@ -59,7 +59,6 @@ impl Grids {
         Ok(Self { grids })
     }
 
-    /// Returns the grids.
     #[must_use]
     pub(crate) fn as_slice(&self) -> &[Grid] {
         &self.grids

@@ -33,7 +33,7 @@ pub(crate) struct Linear<'a> {
     pub grids: &'a [Grid],
     /// The generators of slices on each grid.
     generators: Vec<SampleGenerators<'a>>,
-    /// The program of the rows, once it is asked for.
+    /// The program of the rows, once it is needed.
     program: OnceLock<Program<'a>>,
 }
 

@@ -16,7 +16,7 @@ pub(crate) trait Plant: Sync {
     fn is_exact(&self) -> bool;
 
     /// Poses the program of the rows that recordings ask, and of the directions of `state`. An
-    /// exact plant goes on from the round `before`: its rows do not depend on the sets.
+    /// exact plant continues from the round `before`: its rows do not depend on the sets.
     ///
     /// # Errors
     ///
@@ -48,11 +48,11 @@ pub(crate) struct Round<'a> {
     pub program: Program<'a>,
     /// The rows to begin with. The rows that the program generates join them.
     pub rows: Vec<RowIndex>,
-    /// Where a worst-case motion under the sets of the round before ran away: case and time, s.
+    /// Where a worst-case motion under the sets of the round before diverged: case and time, s.
     pub runs_away: Option<(String, f64)>,
 }
 
-/// What reachable sets cost; infinite where a set was lost.
+/// Cost of reachable sets; infinite if a set was lost.
 pub(crate) struct Costs {
     /// The integral over time of Σ_i s_i width_i of the sets with the noise set, where strands at
     /// one time count by their mean.
@@ -69,7 +69,7 @@ impl Costs {
     /// The costs of no set.
     pub(crate) const NONE: Self = Self { cost: 0.0, of_samples: 0.0, paper: None, volume: 0.0 };
 
-    /// The costs where a set was lost.
+    /// The costs if a set was lost.
     pub(crate) const LOST: Self =
         Self { cost: f64::INFINITY, of_samples: f64::INFINITY, paper: None, volume: f64::INFINITY };
 }

@@ -37,7 +37,7 @@ impl Sensitivity {
     ///
     /// # Errors
     ///
-    /// The time, s, up to which the model could be followed, where it runs away.
+    /// The time, s, up to which the model could be followed, where it diverges.
     pub(super) fn new(
         system: &dyn Nonlinear,
         case: &Case,

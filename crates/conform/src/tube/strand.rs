@@ -11,18 +11,18 @@ use crate::data::runaway::Runaway;
 use crate::sets::UncertaintySets;
 use crate::tube::grids::Grid;
 
-/// A reachable set that could not be followed to the end: the model may run away under its
+/// A reachable set that could not be followed to the end: the model may diverge under its
 /// uncertainty or without any, or the enclosure grew too wide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lost {
-    /// The suite, and the run where it has an input of its own.
+    /// The suite, and the run if it has an input of its own.
     pub case: String,
     /// The last sample time that has a reachable set, s.
     pub time: f64,
     /// The state that grew fastest there.
     pub state: State,
-    /// Whether the nominal motion itself runs away there.
+    /// Whether the nominal motion itself diverges there.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub nominal: bool,
 }
@@ -34,7 +34,7 @@ pub(crate) struct Strand {
     pub times: Arc<TimeGrid>,
     /// The sets at the samples.
     pub hull: Hull,
-    /// Where the sets end early, if they do.
+    /// The early end of the sets, if any.
     pub lost: Option<Lost>,
 }
 

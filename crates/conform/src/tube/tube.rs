@@ -38,8 +38,8 @@ pub struct Tube {
     pub sets: UncertaintySets,
     /// Which bound of the reachable sets recordings are compared with.
     pub(crate) enclosure: Enclosure,
-    /// One for each of the problem's grids where the model is linear, for each of its cases where
-    /// it is not.
+    /// One for each of the problem's grids if the model is linear, for each of its cases where it
+    /// is not.
     pub(crate) strands: Vec<Strand>,
     /// What was found about the recorded points in the sets, once they were judged.
     pub(crate) judged: Option<Judged>,
@@ -56,13 +56,12 @@ impl Tube {
         (sample as usize) < self.strands[strand as usize].hull.len()
     }
 
-    /// Returns the time of a sample, s.
     pub(crate) fn time(&self, (strand, sample): At) -> f64 {
         self.strands[strand as usize].times.times()[sample as usize]
     }
 
-    /// Returns the radii of the interval hull at a sample with the noise set, 2n; infinite where
-    /// the set was lost.
+    /// Returns the radii of the interval hull at a sample with the noise set, 2n; infinite if the
+    /// set was lost.
     pub(crate) fn radii(&self, (strand, sample): At) -> Vec<f64> {
         let hull = &self.strands[strand as usize].hull;
         let radius = |i: usize| {
@@ -73,7 +72,7 @@ impl Tube {
     }
 
     /// Returns the end of the longest recording, s, and the radii of the interval hull with the
-    /// noise set at the end of each recording, the largest in each state, 2n; infinite where a
+    /// noise set at the end of each recording, the largest in each state, 2n; infinite if a
     /// reachable set ends early.
     pub(crate) fn at_end(&self) -> (f64, Vec<f64>) {
         let mut all = (0.0f64, vec![0.0f64; self.sets.initial_set.dimension()]);

@@ -18,13 +18,13 @@ use crate::tube::state_sensitivities::Node;
 const NEAR: f64 = 0.5;
 
 /// For each sample, state and side, by how much the model reaches further than its linearisation;
-/// negative where it reaches less far. It is found at some samples and interpolated between them.
+/// negative if it reaches less far. It is found at some samples and interpolated between them.
 #[derive(Debug, Clone)]
 pub(super) struct Correction {
     /// Samples x 2n x 2.
     further: Vec<f64>,
     states: usize,
-    /// The earliest time (s) at which a worst-case motion ran away.
+    /// The earliest time (s) at which a worst-case motion diverged.
     pub runs_away: Option<f64>,
 }
 
@@ -73,7 +73,7 @@ impl Correction {
     }
 }
 
-/// Returns the corrections at one sample, 2n x 2 (upper, lower), and whether a motion ran away,
+/// Returns the corrections at one sample, 2n x 2 (upper, lower), and whether a motion diverged,
 /// which counts as no correction.
 fn at_node(
     system: &dyn Nonlinear,

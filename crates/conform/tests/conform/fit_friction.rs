@@ -1,4 +1,4 @@
-//! Friction that is taken off along the nominal motion: Coulomb friction, and warm-up.
+//! Friction that is subtracted along the nominal motion: Coulomb friction, and warm-up.
 
 use crate::common::{conform_all, two_joints};
 use crate::fit::{PLAIN, Truth, fitted, problem, record};

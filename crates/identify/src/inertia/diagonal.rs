@@ -81,7 +81,8 @@ impl JointInertia {
                 false => "nothing shows it".to_string(),
             };
             format!(
-                "the recordings do not determine the inertia that {joint} feels ({error}), so that \
+                "the recordings do not determine the inertia that the motor of {joint} moves \
+                    ({error}), so that \
                  its acceleration is not known; move it with more acceleration, or give its motor \
                  inertia in the description"
             )

@@ -88,7 +88,7 @@ pub(crate) fn useless_simulation(robot: &Robot, windows: &[WindowErrors]) -> Opt
             .map(|(j, joint)| {
                 let (error, motion) = (window.q[j], window.motion[j]);
                 let (name, unit) = (&joint.name, joint.kind.position_unit());
-                format!("{name} by {error:.3} {unit} where it moves {motion:.3} {unit}")
+                format!("{name} by {error:.3} {unit}, of a motion of {motion:.3} {unit}")
             })
             .collect();
         let diverged = window.diverged == window.windows;

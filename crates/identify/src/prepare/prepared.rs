@@ -67,8 +67,8 @@ pub fn prepare(
             && robot.joints().iter().any(|joint| joint.armature > 0.0)
     };
     changes.extend(compensated.filter(adds_inertia).map(|_| {
-        "added what the motors' inertia takes, J times the measured acceleration, which the \
-         sensors do not measure"
+        "added J times the measured acceleration, the torque that accelerates the motors, which \
+            the sensors do not measure"
             .to_string()
     }));
     Ok(Prepared { logs, cut_off, changes })
@@ -116,7 +116,7 @@ fn compensation(robot: &Robot) -> String {
         ["gravity", "; there is no dry friction in its description"]
     };
     format!(
-        "took {what} of {} off tau, filtered as tau is: tau is the input u now (--torque \
+        "subtracted {what} of {} from tau, filtered like tau: tau is now the input u (--torque \
          compensated){rest}",
         robot.name()
     )

@@ -44,8 +44,8 @@ impl RawLog {
         let gaps: Vec<f64> = steps.filter(|step| *step > GAP * usual).collect();
         let longest = gaps.iter().copied().fold(0.0, f64::max);
         let text = format!(
-            "{}: {} of up to {longest:.3} s filled by lines from sample to sample; what is proved \
-             there was not recorded",
+            "{}: {} of up to {longest:.3} s filled by linear interpolation; samples proved there \
+                were not recorded",
             self.name,
             counted(gaps.len(), "gap")
         );

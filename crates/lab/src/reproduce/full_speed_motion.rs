@@ -30,7 +30,7 @@ struct Axis {
 ///
 /// # Errors
 ///
-/// Fails with [`ReproduceError::NoRange`] where a joint has no such position.
+/// Fails with [`ReproduceError::NoRange`] if a joint has no such position.
 pub(super) fn full_speed_motion(
     robot: &Robot,
     range: f64,

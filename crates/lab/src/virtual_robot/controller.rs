@@ -1,4 +1,4 @@
-//! The controllers of the virtual robot. They know the nominal model only.
+//! The controllers of the virtual robot. They use the nominal model only.
 
 use std::collections::VecDeque;
 

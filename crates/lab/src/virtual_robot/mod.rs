@@ -8,7 +8,7 @@
 //! later than commanded. Every effect is a parameter of [`VirtualRobotParameters`].
 //!
 //! Computed-torque control with the nominal model drives the arm along a motion, and the torque is
-//! recorded. A run of a test suite follows the motion to one of its points and goes on open loop
+//! recorded. A run of a test suite follows the motion to one of its points and continues open loop
 //! from there, with the recorded torque (Sec. V-B of the paper).
 //!
 //! The simulation uses additions, multiplications, divisions and the elementary functions of the

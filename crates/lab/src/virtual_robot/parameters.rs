@@ -7,7 +7,7 @@ use super::error::VirtualRobotError;
 /// What the virtual robot has beyond its nominal model, and its controller.
 ///
 /// None of the values was identified. They were chosen so that runs spread as on the real LWA 4P
-/// do, or are typical of such arms, as each of them says.
+/// do, or are typical of such arms, as their comments state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct VirtualRobotParameters {
@@ -16,8 +16,8 @@ pub struct VirtualRobotParameters {
     pub link_ratio: f64,
     /// Inertias of the motors over the nominal ones \[-\]. Default 1.03, as for the links.
     pub motor_ratio: f64,
-    /// Mass of a payload that the nominal model does not know, fixed to the last link \[kg\].
-    /// Default 0.1: a small tool.
+    /// Mass of a payload that the nominal model lacks, fixed to the last link \[kg\]. Default 0.1:
+    /// a small tool.
     pub payload_mass: f64,
     /// Position of the payload in the frame of the last link \[m\]. Default 3 cm beyond the flange,
     /// 2 cm beside the axis.

@@ -17,7 +17,7 @@ pub struct Meaning {
 }
 
 const ABOUT_TRIGONOMETRY: &str = "Sines and cosines are states of their own, and X0 bounds each by \
-itself. The tool does not know that s^2 + c^2 = 1, nor that they belong to an angle.";
+itself. The tool does not use s^2 + c^2 = 1, nor that both belong to one angle.";
 
 const ABOUT_NOISE: &str = "The model has a noise set V of the sensors, which is not part of this \
 file: add it to the tool's set before recordings are compared with it.";

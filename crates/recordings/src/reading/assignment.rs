@@ -9,7 +9,7 @@ use super::options::LoggedOptions;
 use super::time_column::{TimeColumns, time_columns};
 use crate::defect::{Defect, DefectKind};
 
-/// What the torques of a log are.
+/// The kind of the torques of a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TorqueKind {
     Measured,
@@ -28,7 +28,7 @@ pub(super) struct Assignment {
     pub qd: Option<Vec<Column>>,
     pub tau: Option<(Vec<Column>, TorqueKind)>,
     pub temperatures: Option<Vec<Column>>,
-    /// Names of the joints, where they are known.
+    /// Names of the joints, if they are known.
     pub joints: Vec<String>,
     pub notes: Vec<String>,
     pub unused: Vec<String>,
@@ -214,7 +214,7 @@ impl Finder<'_> {
             return Err(self.defect(DefectKind::Header, problem, REMEDY));
         }
         let problem = format!(
-            "the positions are targets only: {}; a model needs what the robot did",
+            "the positions are targets only: {}; a model needs the measured motion",
             listed(targets.iter().map(|column| column.text.as_str()))
         );
         let remedy = "log the measured positions too, such as actual_q_0, or leave the file out";

@@ -12,8 +12,8 @@ pub enum LogTime {
     Receipt,
 }
 
-/// What to read from logs in MCAP and rosbag2 where they do not tell: the table `log` of the
-/// settings.
+/// Topics, joints and times of MCAP and rosbag2 logs, if the logs are ambiguous: the table `log` of
+/// the settings.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LogSettings {

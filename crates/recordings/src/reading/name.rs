@@ -2,7 +2,7 @@
 
 use super::unit::{AngleUnit, TimeUnit};
 
-/// What a column holds.
+/// The quantity in a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Quantity {
     Time,
@@ -15,7 +15,7 @@ pub(super) enum Quantity {
     Other,
 }
 
-/// Where the values of a column come from, best first.
+/// The source of the values of a column, best first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Origin {
     Measured,
@@ -30,13 +30,13 @@ pub(super) struct ColumnName {
     pub words: Vec<String>,
     pub quantity: Option<Quantity>,
     pub origin: Origin,
-    /// Words and numbers that say which joint it is.
+    /// Words and numbers that identify the joint.
     pub joint: Vec<String>,
     pub time_unit: Option<TimeUnit>,
     pub angle: Option<AngleUnit>,
 }
 
-/// Words that do not tell joints apart.
+/// Words that do not distinguish joints.
 const FILLERS: [&str; 17] = [
     "joint",
     "joints",

@@ -56,7 +56,7 @@ pub(super) struct Units {
 ///
 /// # Errors
 ///
-/// A sentence that says what is ambiguous, and the setting that decides it.
+/// A sentence about the ambiguity, and the setting that decides it.
 pub(super) fn recognise(
     numbers: &Numbers,
     time: Option<TimeUnit>,
@@ -161,8 +161,8 @@ fn by_limits(numbers: &Numbers) -> Result<AngleUnit, [String; 2]> {
     })
 }
 
-/// Returns the unit of values whose largest is this multiple of its limit in radians; `None` where
-/// it may be either.
+/// Returns the unit of values whose largest is this multiple of its limit in radians; `None` if it
+/// may be either.
 fn unit_of_share(share: f64) -> Option<AngleUnit> {
     let degrees = share / AngleUnit::Degrees.per_radian();
     if share > BEYOND && degrees <= FITS {
@@ -183,8 +183,8 @@ fn ratios(numbers: &Numbers) -> Vec<f64> {
     revolute.filter_map(|i| ratio(numbers.times, &numbers.q[i], &qd[i])).collect()
 }
 
-/// Returns the least-squares slope of q over the integral of qd; `None` where one does not follow
-/// the other. Steps over whole turns are left out.
+/// Returns the least-squares slope of q over the integral of qd; `None` if one does not follow the
+/// other. Steps over whole turns are left out.
 fn ratio(times: &[f64], q: &[f64], qd: &[f64]) -> Option<f64> {
     let (mut moved, mut integral) = (0.0, 0.0);
     let (mut motions, mut integrals) = (vec![0.0], vec![0.0]);

@@ -4,7 +4,7 @@ use super::digits::Decimal;
 use super::number::number;
 use crate::decimal::picoseconds;
 
-/// What is read of a line.
+/// The fields that are read from a line.
 pub(super) struct Row {
     /// For each field of the header, whether it is read.
     is_read: Vec<bool>,

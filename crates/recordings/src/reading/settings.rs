@@ -1,4 +1,4 @@
-//! What the user says about the columns of logs where their names do not tell.
+//! The user's assignment of the columns of logs if their names are ambiguous.
 
 use std::str::FromStr;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::unit::{AngleUnit, TimeUnit};
 
-/// The columns of logs, where their names do not tell: the table `columns` of the settings.
+/// The columns of logs, if their names are ambiguous: the table `columns` of the settings.
 ///
 /// A name is the header of a column with `{}` in place of the number of the joint.
 ///

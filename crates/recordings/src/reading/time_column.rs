@@ -14,7 +14,7 @@ use crate::defect::{Defect, DefectKind};
 pub(super) struct TimeColumns {
     /// The column of the time, or of its whole seconds.
     pub at: usize,
-    /// The column of the nanoseconds of each second, where there is one.
+    /// The column of the nanoseconds of each second, if there is one.
     pub nanoseconds: Option<usize>,
     /// The unit that the settings or the name give.
     pub unit: Option<TimeUnit>,

@@ -7,12 +7,12 @@ use super::dialect::Dialect;
 use super::recognise::Units;
 use crate::run::Run;
 
-/// What was understood of a log.
+/// The interpretation of a log.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Understood {
     /// Paths of its files.
     pub files: Vec<String>,
-    /// What separates columns: commas, semicolons, tabs or blanks.
+    /// The separator of columns: commas, semicolons, tabs or blanks.
     pub separator: &'static str,
     /// Number of samples.
     pub samples: usize,
@@ -24,11 +24,11 @@ pub struct Understood {
     pub time: String,
     /// Columns of the positions.
     pub q: Vec<String>,
-    /// Columns of the velocities; empty where they were differentiated.
+    /// Columns of the velocities; empty if they were differentiated.
     pub qd: Vec<String>,
-    /// Columns of the torques; empty where there is none.
+    /// Columns of the torques; empty if there is none.
     pub tau: Vec<String>,
-    /// What the torques are: `measured`, `demanded`, `current` or `none`.
+    /// The kind of the torques: `measured`, `demanded`, `current` or `none`.
     pub torque: &'static str,
     /// Columns of the temperatures.
     pub temperature: Vec<String>,

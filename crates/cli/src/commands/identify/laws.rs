@@ -1,4 +1,4 @@
-//! What `identify` prints about friction laws.
+//! The section of `identify` about friction laws.
 
 use reachtube::identify::{Identification, SaturatingFriction};
 use reachtube::number::four_decimals;

@@ -35,7 +35,6 @@ fn names(found: &Identification) -> Vec<&str> {
     found.description.joints.iter().map(|joint| joint.name.as_str()).collect()
 }
 
-/// Returns a header with a column for each joint.
 fn joint_header<'a>(first: &'a str, found: &'a Identification) -> Vec<&'a str> {
     std::iter::once(first).chain(names(found)).collect()
 }

@@ -11,7 +11,7 @@ pub(super) struct Sample {
     pub tau: Vec<f64>,
 }
 
-/// How the lines hold samples.
+/// Format of the lines.
 #[derive(Debug, PartialEq)]
 pub(super) enum Form {
     /// One JSON object per line.
@@ -25,7 +25,7 @@ impl Form {
     ///
     /// # Errors
     ///
-    /// What is wrong and what to do.
+    /// The problem and the remedy.
     pub(super) fn of(line: &str, joints: usize) -> Result<Self, String> {
         if line.trim_start().starts_with('{') {
             return Ok(Self::Json);
@@ -55,7 +55,7 @@ impl Form {
     ///
     /// # Errors
     ///
-    /// What is wrong and what to do.
+    /// The problem and the remedy.
     pub(super) fn sample(&self, line: &str) -> Result<Sample, String> {
         let Self::Csv(cells) = self else {
             return serde_json::from_str(line).map_err(|error| {

@@ -68,12 +68,11 @@ impl WholeRun {
 }
 
 impl WholeRuns {
-    /// Returns the runs of one part.
     pub(super) fn one(place: u32, run: WholeRun) -> Self {
         Self::All([(place, run)].into())
     }
 
-    /// Merges the runs of another part. All stay whole where no two share their input, or where all
+    /// Merges the runs of another part. All stay whole if no two share their input, or where all
     /// are cases of their own anyway, up to `most_bytes`. Both depend on the runs only, and what
     /// holds for all holds for every part, so that the order makes no difference.
     pub(super) fn merge(self, other: Self, context: &Context, most_bytes: usize) -> Self {

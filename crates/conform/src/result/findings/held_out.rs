@@ -1,4 +1,4 @@
-//! What motions that were held out of every choice say of the next one.
+//! Findings about the next motion from motions that were held out of every choice.
 
 use reachtube_scalar::number::{counted, two_digits_up};
 
@@ -9,7 +9,7 @@ const FEWEST: usize = 2;
 
 impl Check {
     /// Returns the factor by which the radii of X0 and U would have to grow so that the sets
-    /// enclose all recordings of the check, 1 where they do; `None` where no factor suffices.
+    /// enclose all recordings of the check, 1 if they do; `None` if no factor suffices.
     #[must_use]
     pub fn factor_of_sets(&self) -> Option<f64> {
         match &self.growth {
