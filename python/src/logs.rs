@@ -6,9 +6,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use reachtube::RunSource;
 use reachtube::recordings::{GapLimit, ReadOptions};
-use reachtube_logs::{
-    Cut, Log, LogOptions, LogTime, convert, find_repeats, marked_runs, motions, whole_logs,
-};
+use reachtube_logs::{Cut, Cutting, Log, LogOptions, LogTime, convert, find_repeats};
 
 use crate::failure::{Failure, Result};
 use crate::recordings::NativeRun;
@@ -16,7 +14,7 @@ use crate::watched::watched_alone;
 
 /// Options for cutting a log into runs.
 #[derive(Debug)]
-struct Cutting {
+struct CuttingOptions {
     marker: Option<String>,
     repeats: bool,
     rest_speed: f64,
@@ -39,7 +37,7 @@ pub(crate) fn read_log(
     cutting: (Option<String>, bool, f64, Option<f64>),
 ) -> PyResult<(Vec<NamedRun>, Vec<String>, Vec<String>)> {
     let (marker, repeats, rest_speed, max_gap) = cutting;
-    let cutting = Cutting { marker, repeats, rest_speed, max_gap };
+    let cutting = CuttingOptions { marker, repeats, rest_speed, max_gap };
     watched_alone(py, None, move |_| {
         let time = if receipt_time { LogTime::Receipt } else { LogTime::Header };
         let marker = cutting.marker.clone();
@@ -52,11 +50,13 @@ pub(crate) fn read_log(
     })
 }
 
-fn runs(logs: &[Log], cutting: &Cutting) -> Result<Vec<NamedRun>> {
+fn runs(logs: &[Log], cutting: &CuttingOptions) -> Result<Vec<NamedRun>> {
     let mut cuts: Vec<Cut> = match cutting {
-        Cutting { marker: Some(_), .. } => marked_runs(logs)?,
-        Cutting { repeats: true, rest_speed, .. } => motions(logs, *rest_speed)?,
-        _ => whole_logs(logs),
+        CuttingOptions { marker: Some(_), .. } => Cutting::Marked.runs(logs)?,
+        CuttingOptions { repeats: true, rest_speed, .. } => {
+            Cutting::Motions(*rest_speed).runs(logs)?
+        }
+        _ => Cutting::Whole.runs(logs)?,
     };
     if cutting.repeats {
         find_repeats(logs, &mut cuts, cutting.marker.is_none());

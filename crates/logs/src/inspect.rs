@@ -9,7 +9,7 @@ use reachtube_recordings::{
 };
 use serde::Serialize;
 
-use crate::cut::{Cut, marked_runs, whole_logs};
+use crate::cut::Cutting;
 use crate::error::Result;
 use crate::found::LogFiles;
 use crate::log::{Log, LogOptions};
@@ -114,10 +114,8 @@ impl<'a> LoggedRuns<'a> {
             |robot| robot.joints().iter().map(|joint| joint.name.clone()).collect(),
         );
         let logs = [Log::read(path, &LogOptions::new(settings, &joints)?)?];
-        let cuts: Vec<Cut> = match settings.marker {
-            Some(_) => marked_runs(&logs)?,
-            None => whole_logs(&logs),
-        };
+        let cutting = settings.marker.as_ref().map_or(Cutting::Whole, |_| Cutting::Marked);
+        let cuts = cutting.runs(&logs)?;
         for (number, cut) in cuts.iter().enumerate() {
             let mut found = None;
             let read = logs[0].run(cut.samples.clone()).map(|run| {

@@ -2,7 +2,7 @@
 //!
 //! - [`Log::read`] reads `sensor_msgs/msg/JointState` from the topics of a log. Joints are matched
 //!   by name, and times are the stamps of the headers.
-//! - [`whole_logs`], [`Intervals`], [`marked_runs`] and [`motions`] cut logs into runs, and
+//! - [`Cutting`] and [`Intervals`] cut logs into runs, and
 //!   [`find_repeats`] groups runs that repeat one motion into test suites.
 //! - [`convert`] checks the runs. [`Recorded::write`] writes them as a data set in the format of
 //!   `docs/recordings.md`; [`Recorded::into_runs`] returns them as a source of recordings.
@@ -38,10 +38,9 @@ mod recorded;
 mod repeats;
 mod sample;
 mod seconds;
-mod segments;
 mod series;
 
-pub use cut::{Cut, marked_runs, whole_logs};
+pub use cut::{Cut, Cutting};
 pub use error::{Error, Result};
 pub use found::LogFiles;
 pub use inspect::inspect_logs;
@@ -50,4 +49,3 @@ pub use log::{Log, LogOptions};
 pub use reachtube_recordings::LogTime;
 pub use recorded::{Recorded, RecordedRun, convert};
 pub use repeats::{Repeats, find_repeats};
-pub use segments::motions;

@@ -48,7 +48,7 @@ pub(crate) struct Marker {
 /// # Examples
 ///
 /// ```no_run
-/// use reachtube_logs::{Log, LogOptions, convert, whole_logs};
+/// use reachtube_logs::{Cutting, Log, LogOptions, convert};
 ///
 /// let options = LogOptions {
 ///     topics: vec!["/joint_states".into()],
@@ -56,7 +56,7 @@ pub(crate) struct Marker {
 ///     ..LogOptions::default()
 /// };
 /// let logs = [Log::read("run.mcap".as_ref(), &options)?];
-/// let cuts = whole_logs(&logs);
+/// let cuts = Cutting::Whole.runs(&logs)?;
 /// let runs = convert(&logs, &cuts, Default::default())?;
 /// runs.write("recordings".as_ref())?;
 /// # Ok::<(), reachtube_logs::Error>(())

@@ -42,8 +42,8 @@ fn read_all(path: &Path, bytes: &[u8]) {
         let log = Log::read(path, &LogOptions { recover, marker, ..options() });
         if let Ok(log) = log {
             let logs = [log];
-            let cuts = reachtube_logs::marked_runs(&logs);
-            let cuts = cuts.unwrap_or_else(|_| reachtube_logs::whole_logs(&logs));
+            let cuts = reachtube_logs::Cutting::Marked.runs(&logs);
+            let cuts = cuts.unwrap_or_else(|_| reachtube_logs::Cutting::Whole.runs(&logs).unwrap());
             let _ = reachtube_logs::convert(&logs, &cuts, Default::default());
         }
     }

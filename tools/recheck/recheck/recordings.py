@@ -88,7 +88,10 @@ def _table(path):
     if not lines:
         raise BadInput(f"{path}: the file is empty")
     header = lines[0][1]
+    lines = [(number, cells) for number, cells in lines if any(cells)]
     for number, cells in lines[1:]:
+        while len(cells) > len(header) and not cells[-1]:
+            cells.pop()
         if len(cells) != len(header):
             raise BadInput(f"{path}:{number}: {len(cells)} fields, but {len(header)} in the header")
     return header, lines[1:]

@@ -6,8 +6,7 @@ use clap::Args;
 use reachtube::number::four_decimals;
 use reachtube::recordings::LogSettings;
 use reachtube_logs::{
-    Cut, Intervals, Log, LogOptions, RecordedRun, Repeats, convert, find_repeats, marked_runs,
-    motions, whole_logs,
+    Cut, Cutting, Intervals, Log, LogOptions, RecordedRun, Repeats, convert, find_repeats,
 };
 use serde_json::json;
 
@@ -97,9 +96,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         args.data.iter().map(|path| read_log(path, &options)).collect::<Result<_>>()?;
     let mut cuts = match &intervals {
         Some(intervals) => intervals.runs(&logs)?,
-        None if args.marker.is_some() => marked_runs(&logs)?,
-        None if args.repeats => motions(&logs, args.rest_speed)?,
-        None => whole_logs(&logs),
+        None if args.marker.is_some() => Cutting::Marked.runs(&logs)?,
+        None if args.repeats => Cutting::Motions(args.rest_speed).runs(&logs)?,
+        None => Cutting::Whole.runs(&logs)?,
     };
     let found = repeats(args, &logs, &mut cuts);
     let recorded = convert(&logs, &cuts, args.max_gap.into())?;

@@ -94,7 +94,7 @@ fn logs_that_cannot_be_read_are_refused_with_the_cause() {
                 row[6] = 1e300;
             }
         }),
-        ("log_1.csv:102: column \"q1\" is 1e300, which no joint has", &|row, k, number| {
+        ("log_1.csv:102: joint 1: q1 is 1e300, which no joint has", &|row, k, number| {
             if (k, number) == (100, 1) {
                 row[1] = 1e300;
             }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
-use reachtube_logs::{Cut, Log, LogOptions, convert, marked_runs, whole_logs};
+use reachtube_logs::{Cut, Cutting, Log, LogOptions, convert};
 use reachtube_recordings::{
     Error as RecordingsError, GapLimit, ReadOptions, Run, RunSource, check_limits,
 };
@@ -18,7 +18,7 @@ pub(crate) fn whole(
     settings: &PrepareSettings,
 ) -> Result<(Run, Vec<String>)> {
     let logs = [log(path, robot, settings, None)?];
-    let cuts = whole_logs(&logs);
+    let cuts = Cutting::Whole.runs(&logs)?;
     let mut runs = runs(&logs, &cuts, until, settings)?;
     Ok((runs.remove(0), logs[0].notes().to_vec()))
 }
@@ -31,7 +31,7 @@ pub(crate) fn marked(
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
     let logs = [log(path, robot, settings, settings.log.marker.clone())?];
-    let cuts = marked_runs(&logs)?;
+    let cuts = Cutting::Marked.runs(&logs)?;
     let mut notes = logs[0].notes().to_vec();
     let runs = runs(&logs, &cuts, None, settings)?;
     let mut found = Vec::new();

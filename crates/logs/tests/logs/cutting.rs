@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use crate::support::*;
-use reachtube_logs::{
-    Cut, Intervals, Log, LogOptions, convert, find_repeats, marked_runs, motions,
-};
+use reachtube_logs::{Cut, Cutting, Intervals, Log, LogOptions, convert, find_repeats};
 use reachtube_recordings::{DataSet, GapLimit, RunSource};
 
 /// Returns a log of 100 states, 1 s long.
@@ -73,7 +71,7 @@ fn marked(markers: &[Message]) -> Vec<Cut> {
     all.sort_by_key(|message| message.received);
     let path = bag(folder.path(), &all);
     let options = LogOptions { marker: Some("/marker".into()), ..options() };
-    marked_runs(&[Log::read(&path, &options).unwrap()]).unwrap_or_default()
+    Cutting::Marked.runs(&[Log::read(&path, &options).unwrap()]).unwrap_or_default()
 }
 
 /// Returns a time after the first state, ns.
@@ -136,7 +134,7 @@ fn motions_that_repeat_become_suites() {
     // There and back three times, and once somewhere else.
     let states = moving(&[1.0, -1.0, 1.0, -1.0, 0.6, -0.6, 1.0, -1.0]);
     let logs = [read(&mcap(folder.path(), "zstd", &messages(&states))).unwrap()];
-    let mut cuts = motions(&logs, 0.01).unwrap();
+    let mut cuts = Cutting::Motions(0.01).runs(&logs).unwrap();
     assert_eq!(cuts.len(), 8);
     let found = find_repeats(&logs, &mut cuts, true);
     let suites: Vec<&str> = named(&cuts).into_iter().map(|(_, _, suite)| suite).collect();
@@ -157,7 +155,7 @@ fn motions_that_repeat_become_suites() {
         let apart = (runs[0].q(k)[0] - runs[1].q(k)[0]).abs();
         assert!(apart < 0.02, "sample {k}: {apart}");
     }
-    let none = motions(&logs, 5.0).unwrap_err().to_string();
+    let none = Cutting::Motions(5.0).runs(&logs).unwrap_err().to_string();
     assert!(none.contains("no joint is as fast as 5 rad/s"), "{none}");
 }
 

@@ -32,7 +32,7 @@ fn recover(path: &Path) -> Log {
 /// Checks that a log holds the first of these states, and returns their number.
 fn is_start_of(log: &Log, states: &[State]) -> usize {
     let logs = std::slice::from_ref(log);
-    let cuts = reachtube_logs::whole_logs(logs);
+    let cuts = reachtube_logs::Cutting::Whole.runs(logs).unwrap();
     if cuts.is_empty() {
         return 0;
     }
@@ -126,7 +126,7 @@ fn a_changed_byte_costs_one_chunk() {
         assert_eq!(log.losses().len(), 1, "{:?}", log.losses());
         assert!((180..200).contains(&log.len()), "{}", log.len());
         // The hole is a gap, which a run may not have.
-        let cuts = reachtube_logs::whole_logs(std::slice::from_ref(&log));
+        let cuts = reachtube_logs::Cutting::Whole.runs(std::slice::from_ref(&log)).unwrap();
         let text = reachtube_logs::convert(&[log], &cuts, GapLimit::Usual).unwrap_err().to_string();
         assert!(text.contains("there is a gap of 0."), "{text}");
     }

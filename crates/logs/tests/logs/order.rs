@@ -1,12 +1,12 @@
 //! Messages out of order, topics with stamps of their own, and the topic that is found.
 
 use crate::support::*;
-use reachtube_logs::{Log, LogOptions, convert, whole_logs};
+use reachtube_logs::{Cutting, Log, LogOptions, convert};
 use reachtube_recordings::{GapLimit, ReadOptions, Run, RunSource};
 
 fn run_of(log: Log) -> Run {
     let logs = [log];
-    let cuts = whole_logs(&logs);
+    let cuts = Cutting::Whole.runs(&logs).unwrap();
     let runs = convert(&logs, &cuts, GapLimit::Usual).unwrap().into_runs();
     runs.read(0, &ReadOptions::default()).unwrap()
 }
@@ -80,7 +80,9 @@ fn topics_further_apart_and_missing_messages_are_not_interpolated() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |messages: &[Message]| {
         let logs = [both(&folder, messages)];
-        convert(&logs, &whole_logs(&logs), GapLimit::Usual).unwrap_err().to_string()
+        convert(&logs, &Cutting::Whole.runs(&logs).unwrap(), GapLimit::Usual)
+            .unwrap_err()
+            .to_string()
     };
     let text = refused(&two_topics(4_000_000, Some(20)));
     assert!(text.contains("/efforts has no message with its stamp"), "{text}");

@@ -1,7 +1,7 @@
 //! Refused contents of a log that is whole, and their messages.
 
 use crate::support::*;
-use reachtube_logs::{Log, LogOptions, LogTime, convert, whole_logs};
+use reachtube_logs::{Cutting, Log, LogOptions, LogTime, convert};
 use reachtube_recordings::GapLimit;
 
 /// Returns the message of the error that converting these states gives.
@@ -15,7 +15,7 @@ fn refused_messages(messages: &[Message]) -> String {
         Ok(log) => [log],
         Err(error) => return error.to_string(),
     };
-    convert(&logs, &whole_logs(&logs), GapLimit::Usual).unwrap_err().to_string()
+    convert(&logs, &Cutting::Whole.runs(&logs).unwrap(), GapLimit::Usual).unwrap_err().to_string()
 }
 
 /// Returns 20 good states after a change.
@@ -91,7 +91,7 @@ fn stamps_that_are_all_zero_have_a_way_out() {
     let options = LogOptions { time: LogTime::Receipt, ..options() };
     let logs = [Log::read(&path, &options).unwrap()];
     assert!(logs[0].notes()[0].contains("at which the log received the messages"));
-    let cuts = whole_logs(&logs);
+    let cuts = Cutting::Whole.runs(&logs).unwrap();
     let run = convert(&logs, &cuts, GapLimit::Usual).unwrap().write(folder.path()).unwrap();
     assert_eq!(run[0].start, "1700000000.001000000");
 }
@@ -140,7 +140,9 @@ fn topics_that_contradict_each_other_are_refused() {
     let path = mcap(folder.path(), "zstd", &all);
     let options = LogOptions { topics: vec![TOPIC.into(), "/copy".into()], ..options() };
     let logs = [Log::read(&path, &options).unwrap()];
-    let text = convert(&logs, &whole_logs(&logs), GapLimit::Usual).unwrap_err().to_string();
+    let text = convert(&logs, &Cutting::Whole.runs(&logs).unwrap(), GapLimit::Usual)
+        .unwrap_err()
+        .to_string();
     contains(
         &text,
         &[

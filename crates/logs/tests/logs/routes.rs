@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use crate::support::*;
-use reachtube_logs::{Log, LogOptions, convert, whole_logs};
+use reachtube_logs::{Cutting, Log, LogOptions, convert};
 use reachtube_recordings::{DataSet, GapLimit, ReadOptions, Run, RunSource};
 
 /// Converts a log and returns its run from memory and from the CSV file.
 fn both_routes(path: &Path, options: &LogOptions) -> [Run; 2] {
     let logs = [Log::read(path, options).unwrap()];
-    let cuts = whole_logs(&logs);
+    let cuts = Cutting::Whole.runs(&logs).unwrap();
     let recorded = convert(&logs, &cuts, GapLimit::Usual).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let written = recorded.write(folder.path()).unwrap();

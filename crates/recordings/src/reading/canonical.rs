@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::dialect::Dialect;
 use super::name::Quantity;
-use super::table::{ReadColumn, Table};
+use super::table::{LARGEST, ReadColumn, Table};
 use super::time_column::TimeColumns;
 use super::unit::TimeUnit;
 use crate::defect::{Defect, DefectKind};
@@ -71,7 +71,7 @@ pub fn parse_csv(name: &Path, content: &[u8], options: &ReadOptions) -> Result<R
 pub(super) fn is_recording(dialect: &Dialect) -> bool {
     let names = &dialect.names;
     let n = joints_of(names);
-    n > 0 && dialect.separator == b',' && first_wrong(names, n).is_none()
+    n > 0 && !dialect.is_comment && dialect.separator == b',' && first_wrong(names, n).is_none()
 }
 
 /// Reads a whole recording, of which joint i of the result is joint `places[i]` of the file, from
@@ -133,6 +133,9 @@ fn joints(
         let remedy = "separate them by commas, and write numbers with a decimal point";
         return wrong(DefectKind::File, problem, remedy);
     }
+    if dialect.is_comment {
+        return wrong(DefectKind::Header, "the header is a comment".into(), HEADER);
+    }
     let n = joints_of(names);
     if n > MOST_JOINTS {
         let problem = format!("the header has {n} joints, but at most {MOST_JOINTS} are read");
@@ -181,7 +184,12 @@ fn columns(dialect: &Dialect, n: usize, temperatures: Option<usize>) -> Vec<Read
         name: dialect.names[at].as_str().into(),
         joint: Some(joint).filter(|joint| *joint > 0),
         quantity,
-        limits: (quantity == Quantity::Temperature).then_some(JOINT_TEMPERATURES),
+        limits: match quantity {
+            Quantity::Position => Some([-LARGEST, LARGEST]),
+            Quantity::Temperature => Some(JOINT_TEMPERATURES),
+            // The checks of units name the others, which nothing unwraps before.
+            _ => None,
+        },
     };
     let mut columns = vec![column(0, 0, Quantity::Time)];
     let firsts = [

@@ -19,6 +19,8 @@ pub(super) struct Dialect {
     fields: usize,
     /// Line of the header, from 1.
     pub line: u64,
+    /// Whether the header is a comment, as NumPy writes it.
+    pub is_comment: bool,
 }
 
 impl Dialect {
@@ -52,7 +54,8 @@ impl Dialect {
         while names.last().is_some_and(String::is_empty) {
             names.pop();
         }
-        Ok(Self { separator, start, end, names, fields, line })
+        let is_comment = matches!(bytes[..start].last(), Some(b'#' | b' '));
+        Ok(Self { separator, start, end, names, fields, line, is_comment })
     }
 
     pub(super) fn separator_name(&self) -> &'static str {

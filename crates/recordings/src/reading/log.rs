@@ -14,7 +14,7 @@ use super::name::Quantity;
 use super::options::LoggedOptions;
 use super::recognise::{Numbers, Units, recognise};
 use super::settings::ColumnSettings;
-use super::table::{ReadColumn, Table};
+use super::table::{LARGEST, ReadColumn, Table};
 use super::understood::Understood;
 use crate::defect::{Defect, DefectKind};
 use crate::run::Run;
@@ -24,9 +24,6 @@ use crate::unwrap::take_out_turns;
 
 /// A joint that leaves its first position by more than this moves, rad or m.
 const MOVES: f64 = 0.05;
-
-/// No quantity of a joint is beyond this in any unit.
-const LARGEST: f64 = 1e9;
 
 /// A recording of a log, and what was understood of it.
 #[derive(Debug, Clone, PartialEq)]

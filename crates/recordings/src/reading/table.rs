@@ -15,6 +15,9 @@ use crate::text::quoted;
 /// Number of defects after which a file is not read on.
 const MOST_DEFECTS: usize = 1000;
 
+/// No quantity of a joint is beyond this in any unit.
+pub(super) const LARGEST: f64 = 1e9;
+
 /// A column of a file that is read.
 #[derive(Debug)]
 pub(super) struct ReadColumn<'a> {
@@ -66,7 +69,7 @@ impl Table {
             times,
             time: place(times.at).unwrap_or_default(),
             nanoseconds: times.nanoseconds.and_then(place),
-            limited: (0..columns.len()).filter(|i| columns[*i].limits.is_some()).collect(),
+            limited: (0..).zip(&columns).filter_map(|(i, c)| Some((i, c.limits?))).collect(),
             row: Row::new(dialect.names.len(), &table.columns, times.at, dialect.separator),
             columns,
             table,
@@ -138,7 +141,7 @@ struct Reader<'a> {
     /// Places of the time, of its nanoseconds, and of columns with limits among the columns.
     time: usize,
     nanoseconds: Option<usize>,
-    limited: Vec<usize>,
+    limited: Vec<(usize, [f64; 2])>,
     row: Row,
     table: Table,
     defects: Vec<Defect>,
@@ -239,7 +242,7 @@ impl Reader<'_> {
     fn keeps(&mut self, line: u64) -> bool {
         let (time, values) = (self.row_time(), &self.row.values);
         let above = self.table.rows.last().and_then(|row| row.time);
-        let is_possible = |place: &usize| possible(&self.columns[*place], values[*place]);
+        let is_possible = |(place, limits): &(usize, [f64; 2])| within(*limits, values[*place]);
         let is_sound =
             above.is_none_or(|above| time > above) && self.limited.iter().all(is_possible);
         if is_sound {
@@ -267,7 +270,8 @@ impl Reader<'_> {
             if place == self.time {
                 self.row.time = time(&text, value);
             }
-            if !value.is_finite() || !possible(&self.columns[place], value) {
+            let is_possible = self.columns[place].limits.is_none_or(|limits| within(limits, value));
+            if !value.is_finite() || !is_possible {
                 self.bad_value(line, place, value, &text);
             }
         }
@@ -339,8 +343,8 @@ impl Reader<'_> {
     }
 }
 
-fn possible(column: &ReadColumn, value: f64) -> bool {
-    column.limits.is_none_or(|[low, high]| (low..=high).contains(&value))
+fn within([low, high]: [f64; 2], value: f64) -> bool {
+    low <= value && value <= high
 }
 
 /// Returns a difference of times in s, to the picosecond.
