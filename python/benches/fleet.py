@@ -1,6 +1,6 @@
 """Times folds of many recordings in one process and on 1, 2 and 4 Dask workers, one of them killed.
 
-    reachtube campaign --runs 132 --poses 2 --out CAMPAIGN
+    reachtube campaign --runs 132 --rest 2 --out CAMPAIGN
     python python/benches/fleet.py CAMPAIGN [SIZE]
 
 CAMPAIGN holds the paper's whole experiment on a virtual arm, with more runs in each suite: 20,064

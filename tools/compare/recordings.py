@@ -16,7 +16,7 @@ def base(reachtube, root, folder):
     made = folder / "campaign"
     if not (made / "runs.csv").exists():
         options = ["--motions", "1", "--start-points", "4", "--runs", "18", "--longest", "4.3"]
-        options += ["--poses", "2", "--friction", "1", "--excitation", "1", "--validation", "0"]
+        options += ["--rest", "2", "--one-joint", "1", "--excitation", "1", "--validation", "0"]
         subprocess.run([reachtube, "--quiet", "campaign", *options, "--out", made], check=True)
     return made
 

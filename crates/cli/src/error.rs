@@ -305,7 +305,6 @@ fn kind(error: &reachtube::Error) -> &'static str {
         E::Conform(_) => "conform",
         E::Campaign(_) => "campaign",
         E::VirtualRobot(_) => "virtual-robot",
-        E::Demo(_) => "demo",
         E::Reproduce(_) => "reproduce",
         E::Page(_) => "report",
         _ => "other",

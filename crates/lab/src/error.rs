@@ -30,9 +30,6 @@ pub enum Error {
     /// A campaign could not be recorded.
     #[error(transparent)]
     Campaign(#[from] crate::campaign::error::CampaignError),
-    /// A demo could not be recorded.
-    #[error(transparent)]
-    Demo(#[from] crate::demo::error::DemoError),
     /// A table of the paper could not be reproduced.
     #[error(transparent)]
     Reproduce(#[from] crate::reproduce::error::ReproduceError),

@@ -1,7 +1,6 @@
 #![doc = include_str!("../README.md")]
 
 pub mod campaign;
-pub mod demo;
 mod error;
 mod motion;
 mod random;

@@ -1,6 +1,6 @@
 //! A virtual arm is recorded, its smallest sets are found on some motions and tried on others.
 
-use reachtube::demo::{DemoOptions, record};
+use reachtube::campaign::{CampaignOptions, record};
 use reachtube::{
     DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, Tube, check, conform,
 };
@@ -8,7 +8,7 @@ use reachtube::{
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let robot = Robot::lwa4p();
-    let recorded = record(&robot, &DemoOptions::default(), folder.path())?;
+    let recorded = record(&robot, &CampaignOptions::demo(), folder.path(), &|_done, _total| ())?;
     let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
     let open = || DataSet::open(folder.path()).map(Box::new);
 

@@ -1,7 +1,7 @@
 //! The report page of a virtual arm, written to the folder `reachtube-report`.
 
+use reachtube::campaign::{CampaignOptions, record};
 use reachtube::conform::result::FrontEnd;
-use reachtube::demo::{DemoOptions, record};
 use reachtube::page::{Assets, Sources, page, write_html};
 use reachtube::{
     Check, DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, conform, reach,
@@ -11,7 +11,7 @@ use reachtube::{
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let robot = Robot::lwa4p();
-    let recorded = record(&robot, &DemoOptions::default(), folder.path())?;
+    let recorded = record(&robot, &CampaignOptions::demo(), folder.path(), &|_done, _total| ())?;
     let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
     let source = Box::new(DataSet::open(folder.path())?);
     let problem = Problem::read(setup, source, &recorded.training, Keep::All, &Silent)?;

@@ -13,7 +13,7 @@ pub use reachtube_conform::{
 pub use reachtube_files::{TOOL, printable, write};
 pub use reachtube_identify::{self as identify, Identification, identify};
 #[cfg(feature = "report")]
-pub use reachtube_lab::{Error, Result, campaign, demo, reproduce, virtual_robot};
+pub use reachtube_lab::{Error, Result, campaign, reproduce, virtual_robot};
 #[cfg(feature = "report")]
 pub use reachtube_page as page;
 pub use reachtube_pipeline as pipeline;

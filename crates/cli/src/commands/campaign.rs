@@ -16,7 +16,7 @@ const HELP: &str = "\
 Examples:
   reachtube campaign --out campaign
       record the paper's experiment: 152 suites of 15 runs, and recordings to identify with
-  reachtube campaign --out small --motions 4 --runs 5 --poses 100 --parameters robot.toml
+  reachtube campaign --out small --motions 4 --runs 5 --rest 100 --parameters robot.toml
       record a smaller one, with parameters of the virtual robot such as payload_mass = 0.5
 
 Then, in the folder: reachtube conform --robot lwa4p --data . --torque compensated
@@ -48,12 +48,12 @@ pub(crate) struct Arguments {
     /// Longest duration of a run, s
     #[arg(long, hide_short_help = true, default_value_t = 5.0, value_name = "SECONDS")]
     pub longest: f64,
-    /// Static poses, for gravity
+    /// Poses at rest, for gravity
     #[arg(long, hide_short_help = true, default_value_t = 1000, value_name = "COUNT")]
-    pub poses: usize,
+    pub rest: usize,
     /// Recordings of slow motions for each joint
     #[arg(long, hide_short_help = true, default_value_t = 6, value_name = "COUNT")]
-    pub friction: usize,
+    pub one_joint: usize,
     /// Exciting motions
     #[arg(long, hide_short_help = true, default_value_t = 6, value_name = "COUNT")]
     pub excitation: usize,
@@ -81,16 +81,17 @@ fn options(args: &Arguments) -> Result<CampaignOptions> {
         start_points: args.start_points,
         runs: args.runs,
         longest: args.longest,
-        poses: args.poses,
-        friction: args.friction,
+        rest: args.rest,
+        one_joint: args.one_joint,
         excitation: args.excitation,
         validation: args.validation,
         robot: args.robot.parameters()?,
+        ..CampaignOptions::default()
     })
 }
 
 fn summary(args: &Arguments, recorded: &RecordedCampaign) -> String {
-    let RecordedCampaign { suites, runs, recordings, kept, bytes } = recorded;
+    let RecordedCampaign { suites, runs, recordings, kept, bytes, .. } = recorded;
     let kept = match kept {
         0 => String::new(),
         kept => format!(", {kept} of them by an earlier start"),

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use reachtube::campaign::{CampaignOptions, RecordedCampaign, record};
 use reachtube::conform::result::{FrontEnd, Summary, Table};
 use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
-use reachtube::demo::{DemoOptions, RecordedDemo, record};
 use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};
 use reachtube::{Model, write};
@@ -74,9 +74,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let safety = missing(&args.out);
     output::claim_all([&path].into_iter().chain(safety.iter().map(|(path, _)| path)))?;
     output::claim_all(&pages.each_ref().map(|folder| report_files::page_in(folder)))?;
-    let options = options(args)?;
-    let bar = Progress::new();
-    let recorded = record(&robot, &options, &folder)?;
+    let sizes = CampaignOptions { seed: args.seed, ..CampaignOptions::demo() };
+    let options = CampaignOptions { robot: args.robot.parameters()?, ..sizes };
+    let bar = Progress::of("recording");
+    let recorded = record(&robot, &options, &folder, &|done, total| bar.show(done, total))?;
     drop(bar);
     output::note(&format!(
         "recorded {} runs of a simulated {} in {}",
@@ -131,7 +132,7 @@ fn text(
     opened: &OpenedCheck,
     held_out: &Check,
     summary: Summary,
-    recorded: &RecordedDemo,
+    recorded: &RecordedCampaign,
     page: &Path,
 ) -> String {
     let heading = held_out_heading(recorded);
@@ -145,17 +146,6 @@ fn text(
     let tried = Summary { table: Table::default(), next: None, ..opened.summary(held_out) };
     let page = report_files::page_in(page);
     format!("{model}\n{heading}\n{tried}\nnext: open {} in a browser\n", page.display())
-}
-
-fn options(args: &Arguments) -> Result<DemoOptions> {
-    Ok(DemoOptions {
-        seed: args.seed,
-        motions: 14,
-        calibration_motions: 7,
-        runs: 5,
-        robot: args.robot.parameters()?,
-        ..DemoOptions::default()
-    })
 }
 
 /// Checks the model on the suites held out and writes a report page about them.
@@ -184,6 +174,6 @@ fn check_held_out(
     Ok((opened, check))
 }
 
-fn held_out_heading(recorded: &RecordedDemo) -> String {
+fn held_out_heading(recorded: &RecordedCampaign) -> String {
     format!("Suites {} were held out and tried last:", recorded.check.join(", "))
 }

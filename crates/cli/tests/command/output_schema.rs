@@ -114,7 +114,7 @@ fn a_demo_fits_the_schema() {
 fn a_campaign_fits_the_schema() {
     let lab = Lab::new();
     lab.write("robot.toml", "payload_mass = 0.5\n");
-    let few = "--motions 1 --start-points 1 --runs 2 --longest 0.2 --poses 0 --friction 0 \
+    let few = "--motions 1 --start-points 1 --runs 2 --longest 0.2 --rest 0 --one-joint 0 \
                --excitation 0 --validation 0 --parameters robot.toml";
     let campaign = format!("campaign --out out {few}");
     fits("campaign", &lab.run(&format!("{campaign} --json")).exits(0).json());

@@ -41,7 +41,7 @@ fn table_1_of_another_robot() {
 #[test]
 fn table_2_is_printed_beside_the_papers() {
     let lab = Lab::new();
-    let few = "--motions 2 --start-points 1 --runs 3 --longest 0.4 --poses 0 --friction 0 \
+    let few = "--motions 2 --start-points 1 --runs 3 --longest 0.4 --rest 0 --one-joint 0 \
                --excitation 0 --validation 0";
     lab.run(&format!("campaign --out out {few}")).exits(0);
     let text = lab.run("reproduce table2 --data out --notions hull,exact").exits(0).stdout;
@@ -80,7 +80,7 @@ fn table_2_is_printed_beside_the_papers() {
 #[test]
 fn figures_of_the_paper_are_drawn_of_a_campaign() {
     let lab = Lab::new();
-    let few = "--motions 2 --start-points 2 --runs 3 --longest 0.4 --poses 0 --friction 0 \
+    let few = "--motions 2 --start-points 2 --runs 3 --longest 0.4 --rest 0 --one-joint 0 \
                --excitation 0 --validation 0";
     lab.run(&format!("campaign --out out {few}")).exits(0);
     for number in 1..=4 {

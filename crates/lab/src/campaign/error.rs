@@ -18,11 +18,28 @@ pub enum CampaignError {
         /// The largest number.
         most: usize,
     },
-    /// The longest duration of a run is not supported.
-    #[error("campaign: runs of at most {given} s; give 0.1 to 3600 s")]
-    Longest {
+    /// A duration is not supported.
+    #[error("campaign: {name} of {given} s; give {least} to {most} s")]
+    Duration {
+        /// What lasts so long.
+        name: &'static str,
         /// The duration given \[s\].
         given: f64,
+        /// The shortest duration \[s\].
+        least: f64,
+        /// The longest duration \[s\].
+        most: f64,
+    },
+    /// All motions are held out.
+    #[error(
+        "campaign: {motions} motions, of which {held_out} are held out, leave none to train with; \
+         hold out fewer motions"
+    )]
+    NoTrainingMotion {
+        /// Number of motions.
+        motions: usize,
+        /// Number of motions held out.
+        held_out: usize,
     },
     /// The folder holds files that no campaign has written.
     #[error(
@@ -38,7 +55,7 @@ pub enum CampaignError {
         "{}: the folder holds a campaign with other options, another robot or another version of \
          the program: {} names them; give the same, or an empty folder",
         folder.display(),
-        super::mark::MARK
+        super::options::MARK
     )]
     OtherCampaign {
         /// The folder.
@@ -46,10 +63,10 @@ pub enum CampaignError {
     },
     /// The folder has no options of a campaign.
     #[error(
-        "{}: the folder has no {} of `reachtube campaign`, from which the planned motion follows; \
-         give the folder of a campaign",
+        "{}: the folder has no {} of `reachtube campaign`, from which the planned motion and the \
+         arm follow; give the folder of a campaign",
         folder.display(),
-        super::mark::MARK
+        super::options::MARK
     )]
     NotACampaign {
         /// The folder.

@@ -11,8 +11,7 @@ use sha2::{Digest, Sha256};
 
 use super::error::CampaignError;
 use super::job::Job;
-use super::mark::MARK;
-use super::options::CampaignOptions;
+use super::options::{CampaignOptions, MARK};
 use super::readme::readme;
 use crate::error::Result;
 use crate::virtual_robot::VirtualRobot;
@@ -21,7 +20,7 @@ use crate::virtual_robot::VirtualRobot;
 const INDEX: &str = "runs.csv";
 
 const INDEX_HEADER: &str =
-    "file,kind,suite,motion,repeat,rows,duration_s,temperature,sha256,simulated\n";
+    "file,kind,suite,motion,use,repeat,rows,duration_s,temperature,sha256,simulated\n";
 
 /// Advice where a recording of the campaign cannot be read back.
 const REMEDY: &str = "delete it, and start the campaign again";
@@ -94,8 +93,12 @@ impl<'a> Folder<'a> {
 /// Returns the line of a recording in the index, from its text.
 pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
     let (file, kind, repeat) = (&job.files[index], job.kind, job.first + index);
-    let [suite, motion] =
-        job.suite.as_ref().map_or(["", ""], |names| names.each_ref().map(|s| &**s));
+    let [suite, motion, use_for] = match job.as_suite() {
+        Some((runs, of)) => {
+            [&*runs.name, &*of.motion, if of.is_held_out { "check" } else { "training" }]
+        }
+        None => [""; 3],
+    };
     let rows = text.lines().count() - 1;
     let fields = |line: Option<&str>| -> Vec<f64> {
         line.unwrap_or_default().split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect()
@@ -106,8 +109,8 @@ pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
     let temperature = temperatures.iter().sum::<f64>() / temperatures.len() as f64;
     let hash = hex(&Sha256::digest(text));
     format!(
-        "{file},{kind},{suite},{motion},{repeat},{rows},{duration:.3},{temperature:.2},{hash},\
-         true\n"
+        "{file},{kind},{suite},{motion},{use_for},{repeat},{rows},{duration:.3},\
+         {temperature:.2},{hash},true\n"
     )
 }
 

@@ -1,14 +1,17 @@
-//! A whole experiment as in the paper on a virtual robot: recordings to identify it with, and test
-//! suites of random motions, as one data set.
+//! Recordings of a virtual robot that differs from its nominal model, as one data set: the paper's
+//! whole experiment, or a small demo.
 //!
-//! The experiment follows Sec. V-B and of the appendix:
+//! The experiment follows Sec. V-B and the appendix of the paper:
 //!
 //! - Random point-to-point motions are followed closed loop, and the torque is recorded. Each gives
 //!   test suites that start at several of its points (Fig. 3) and apply that torque open loop.
 //! - Static poses show gravity, slow motions of single joints show friction, and exciting motions
 //!   show the inertial parameters.
 //!
-//! The files are independent of each other, so that both cores are used, and each is written whole.
+//! [`CampaignOptions::demo`] has test suites only, some of them to calibrate the sets and to try
+//! them on; they take a second or two to make.
+//!
+//! The files are independent of each other, so that all cores are used, and each is written whole.
 //! A campaign that was stopped goes on where it ended, with the same bytes.
 
 pub(crate) mod error;
@@ -16,10 +19,8 @@ mod excitation;
 mod folder;
 mod job;
 mod joint_motion;
-mod mark;
 mod options;
 mod plan;
-mod planned;
 mod pose_series;
 mod readme;
 mod record;
@@ -27,7 +28,7 @@ mod record;
 mod tests;
 
 pub use error::CampaignError;
-pub(crate) use job::PlannedSuite;
 pub use options::CampaignOptions;
-pub(crate) use planned::planned_suites;
+pub(crate) use options::campaign_options;
+pub(crate) use plan::{PlannedSuite, planned_suites};
 pub use record::{RecordedCampaign, record};

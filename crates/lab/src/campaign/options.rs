@@ -1,9 +1,14 @@
-//! The options of a campaign.
+//! The options of a campaign, and the file that keeps them in its folder.
+
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::error::CampaignError;
 use crate::virtual_robot::VirtualRobotParameters;
+
+/// The file that marks the folder of a campaign and holds its options.
+pub(super) const MARK: &str = "campaign.json";
 
 /// Largest number of suites per motion, which are named by letters.
 const MOST_START_POINTS: usize = 26;
@@ -16,18 +21,25 @@ const MOST: usize = 100_000;
 pub struct CampaignOptions {
     /// Seed; the same seed gives the same recordings.
     pub seed: u64,
-    /// Number of random point-to-point motions.
+    /// Number of random point-to-point motions, those held out included.
     pub motions: usize,
+    /// Number of motions, taken before those held out, that calibrate the sets.
+    pub calibration_motions: usize,
+    /// Number of motions, taken from the last ones, that are held out for a check of the model.
+    pub held_out_motions: usize,
     /// Number of points of each motion from which the open loop starts; each gives a suite.
     pub start_points: usize,
     /// Number of runs of each suite.
     pub runs: usize,
+    /// Duration of each motion \[s\]; if `None`, each motion goes from one random pose to another
+    /// at a random speed.
+    pub duration: Option<f64>,
     /// Longest duration of a run \[s\].
     pub longest: f64,
     /// Number of static poses: rests, two at each position, from both sides.
-    pub poses: usize,
+    pub rest: usize,
     /// Number of recordings of slow motions for each joint.
-    pub friction: usize,
+    pub one_joint: usize,
     /// Number of exciting motions to identify with.
     pub excitation: usize,
     /// Number of exciting motions to validate with.
@@ -43,11 +55,14 @@ impl Default for CampaignOptions {
         Self {
             seed: 1,
             motions: 38,
+            calibration_motions: 0,
+            held_out_motions: 0,
             start_points: 4,
             runs: 15,
+            duration: None,
             longest: 5.0,
-            poses: 1000,
-            friction: 6,
+            rest: 1000,
+            one_joint: 6,
             excitation: 6,
             validation: 2,
             robot: VirtualRobotParameters::default(),
@@ -56,23 +71,69 @@ impl Default for CampaignOptions {
 }
 
 impl CampaignOptions {
+    /// Returns the sizes of the demo: 14 motions of 3 s, of which 7 calibrate the sets and 2 are
+    /// held out, with 2 suites of 5 runs per motion, and no other recordings.
+    #[must_use]
+    pub fn demo() -> Self {
+        let few = Self { motions: 14, start_points: 2, runs: 5, ..Self::default() };
+        let split = Self { calibration_motions: 7, held_out_motions: 2, ..few };
+        Self { duration: Some(3.0), ..split.suites_only() }
+    }
+
+    /// Returns these sizes without recordings to identify with.
+    #[must_use]
+    pub fn suites_only(self) -> Self {
+        Self { rest: 0, one_joint: 0, excitation: 0, validation: 0, ..self }
+    }
+
+    pub(super) fn has_suites_only(&self) -> bool {
+        [self.rest, self.one_joint, self.excitation, self.validation] == [0; 4]
+    }
+
     pub(super) fn validate(&self) -> Result<(), CampaignError> {
         for (name, given, least, most) in [
             ("motions", self.motions, 1, MOST),
             ("start points", self.start_points, 1, MOST_START_POINTS),
             ("runs", self.runs, 1, MOST),
-            ("poses", self.poses, 0, MOST),
-            ("friction", self.friction, 0, MOST),
-            ("excitation", self.excitation, 0, MOST),
-            ("validation", self.validation, 0, MOST),
+            ("poses at rest", self.rest, 0, MOST),
+            ("motions of one joint", self.one_joint, 0, MOST),
+            ("exciting motions", self.excitation, 0, MOST),
+            ("validating motions", self.validation, 0, MOST),
         ] {
             if !(least..=most).contains(&given) {
                 return Err(CampaignError::Count { name, given, least, most });
             }
         }
-        if !(0.1..=3600.0).contains(&self.longest) {
-            return Err(CampaignError::Longest { given: self.longest });
+        for (name, given, [least, most]) in [
+            ("runs", self.longest, [0.1, 3600.0]),
+            ("motions", self.duration.unwrap_or(1.0), [0.5, 60.0]),
+        ] {
+            if !(least..=most).contains(&given) {
+                return Err(CampaignError::Duration { name, given, least, most });
+            }
+        }
+        let (motions, held_out) =
+            (self.motions, self.held_out_motions.saturating_add(self.calibration_motions));
+        if motions <= held_out {
+            return Err(CampaignError::NoTrainingMotion { motions, held_out });
         }
         Ok(())
     }
+}
+
+/// Returns the options of the campaign that was recorded in `folder`.
+///
+/// # Errors
+///
+/// [`CampaignError::NotACampaign`] if the folder has no options of a campaign.
+pub(crate) fn campaign_options(folder: &Path) -> Result<CampaignOptions, CampaignError> {
+    #[derive(Deserialize)]
+    struct Mark {
+        options: CampaignOptions,
+    }
+    let not = || CampaignError::NotACampaign { folder: folder.into() };
+    let text = std::fs::read(folder.join(MARK)).map_err(|_| not())?;
+    let Mark { options } = serde_json::from_slice(&text).map_err(|_| not())?;
+    options.validate()?;
+    Ok(options)
 }

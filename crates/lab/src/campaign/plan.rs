@@ -1,15 +1,19 @@
 //! The plan of a campaign: all that is random is drawn from the seed before anything is simulated,
 //! so the order of simulation does not matter.
 
+use std::path::Path;
+
+use reachtube_robot::Robot;
+
+use super::excitation::ExcitingMotion;
+use super::job::{Job, SuiteOf, Work};
+use super::joint_motion::JointMotion;
+use super::options::{CampaignOptions, campaign_options};
+use super::pose_series::PoseSeries;
+use crate::error::Result;
 use crate::motion::{Motion, SAMPLE_TIME};
 use crate::random::{SeedableRng, SplitMix64};
 use crate::virtual_robot::{Scatter, SuiteRuns, VirtualRobot};
-
-use super::excitation::ExcitingMotion;
-use super::job::{Job, Work};
-use super::joint_motion::JointMotion;
-use super::options::CampaignOptions;
-use super::pose_series::PoseSeries;
 
 /// Rests in one recording: two at each position.
 const POSES_PER_FILE: usize = 20;
@@ -24,17 +28,17 @@ pub(super) fn jobs(robot: &VirtualRobot, options: &CampaignOptions) -> Vec<Job> 
         jobs.extend(suites(robot, options, motion, &mut random));
     }
     let (nominal, mut random) = (robot.nominal(), stream(1));
-    for first in (0..options.poses).step_by(POSES_PER_FILE) {
-        let count = POSES_PER_FILE.min(options.poses - first);
+    for first in (0..options.rest).step_by(POSES_PER_FILE) {
+        let count = POSES_PER_FILE.min(options.rest - first);
         let series = PoseSeries::random(nominal, count, &mut random);
-        jobs.push(Job::identification("poses", first / POSES_PER_FILE, Work::Poses(series)));
+        jobs.push(Job::identification("rest", first / POSES_PER_FILE, Work::Poses(series)));
     }
     let mut random = stream(2);
     for joint in 0..nominal.joint_count() {
-        for pose in 0..options.friction {
+        for pose in 0..options.one_joint {
             let motion = JointMotion::random(nominal, joint, &mut random);
-            let index = joint * options.friction + pose;
-            jobs.push(Job::identification("friction", index, Work::Friction(motion)));
+            let index = joint * options.one_joint + pose;
+            jobs.push(Job::identification("one-joint", index, Work::OneJoint(motion)));
         }
     }
     for (kind, name, count) in
@@ -56,9 +60,15 @@ fn suites(
     index: usize,
     random: &mut SplitMix64,
 ) -> Vec<Job> {
-    let motion = Motion::uniform(robot.nominal(), random);
-    let digits = options.motions.to_string().len();
-    let name = format!("M{:0digits$}", index + 1);
+    let motion = match options.duration {
+        Some(duration) => Motion::random(robot.nominal(), duration, random),
+        None => Motion::uniform(robot.nominal(), random),
+    };
+    let name = format!("M{}", index + 1);
+    let held_out = options.motions - options.held_out_motions;
+    let calibrates = (held_out - options.calibration_motions..held_out).contains(&index);
+    let of = SuiteOf { motion: name.clone(), calibrates, is_held_out: index >= held_out };
+    let folder = if options.has_suites_only() { "" } else { "suites/" };
     let longest = (options.longest / SAMPLE_TIME).round() as usize;
     (0..options.start_points)
         .map(|start| {
@@ -69,7 +79,37 @@ fn suites(
                 samples: longest.min(motion.cycles() - first) + 1,
                 scatter: (0..options.runs).map(|_| Scatter::random(robot, random)).collect(),
             };
-            Job::suite(&name, motion.clone(), runs)
+            Job::suite(folder, of.clone(), motion.clone(), runs)
         })
         .collect()
+}
+
+/// A suite of a campaign before it was recorded.
+pub(crate) struct PlannedSuite {
+    /// Its name.
+    pub name: String,
+    /// Name of the motion that it is part of.
+    pub motion_name: String,
+    /// That motion.
+    pub motion: Motion,
+    /// Cycle of the motion at which the open loop begins.
+    pub first: usize,
+}
+
+/// Returns the suites of the campaign of the LWA 4P in `folder`, in the order of the index.
+///
+/// # Errors
+///
+/// As [`campaign_options`].
+pub(crate) fn planned_suites(folder: &Path) -> Result<Vec<PlannedSuite>> {
+    let options = campaign_options(folder)?;
+    let robot = VirtualRobot::new(&Robot::lwa4p(), options.robot.clone())?;
+    let planned = |job: Job| match job.work {
+        Work::Suite(SuiteOf { motion: motion_name, .. }, motion, runs) => {
+            let SuiteRuns { name, first, .. } = runs;
+            Some(PlannedSuite { name, motion_name, motion, first })
+        }
+        _ => None,
+    };
+    Ok(jobs(&robot, &options).into_iter().filter_map(planned).collect())
 }

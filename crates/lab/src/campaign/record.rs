@@ -12,7 +12,7 @@ use super::job::Job;
 use super::options::CampaignOptions;
 use super::plan;
 use crate::error::Result;
-use crate::virtual_robot::VirtualRobot;
+use crate::virtual_robot::{SuiteRuns, VirtualRobot};
 
 /// What a campaign has recorded.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -27,6 +27,15 @@ pub struct RecordedCampaign {
     pub kept: usize,
     /// Size of all recordings \[bytes\].
     pub bytes: u64,
+    /// Names of the motions that calibrate the sets.
+    #[serde(skip)]
+    pub calibration: Vec<String>,
+    /// Names of the suites to find the sets with.
+    #[serde(skip)]
+    pub training: Vec<String>,
+    /// Names of the suites of other motions, to check the model with.
+    #[serde(skip)]
+    pub check: Vec<String>,
 }
 
 /// Records a campaign of a virtual robot with the nominal model `robot` into `folder`, on all
@@ -54,11 +63,13 @@ pub struct RecordedCampaign {
 /// use reachtube_robot::Robot;
 ///
 /// let folder = tempfile::tempdir().unwrap();
-/// let few = CampaignOptions { motions: 1, runs: 2, poses: 2, friction: 0, ..Default::default() };
-/// let options = CampaignOptions { start_points: 1, excitation: 0, validation: 0, ..few };
+/// let few = CampaignOptions { motions: 2, held_out_motions: 1, runs: 2, ..Default::default() };
+/// let suites = CampaignOptions { calibration_motions: 0, duration: Some(1.0), ..few };
+/// let options = CampaignOptions { start_points: 2, longest: 0.5, ..suites.suites_only() };
 /// let recorded = record(&Robot::lwa4p(), &options, folder.path(), &|_done, _total| ())?;
-/// assert_eq!((recorded.runs, recorded.recordings), (2, 3));
-/// assert_eq!(DataSet::open(folder.path())?.suites()[0].name, "M1a");
+/// assert_eq!(recorded.training, ["M1a", "M1b"]);
+/// assert_eq!(recorded.check, ["M2a", "M2b"]);
+/// assert_eq!(DataSet::open(folder.path())?.runs().len(), 8);
 /// # Ok::<(), reachtube_lab::Error>(())
 /// ```
 pub fn record(
@@ -82,13 +93,22 @@ pub fn record(
         .collect::<Result<Vec<_>>>()?;
     let lines: Vec<String> = recorded.iter().flat_map(|job| job.lines.clone()).collect();
     folder.finish(&lines)?;
-    let suites = jobs.iter().filter(|job| job.suite.is_some());
+    let suites: Vec<_> = jobs.iter().filter_map(Job::as_suite).collect();
+    let (check, training): (Vec<_>, Vec<_>) = suites.iter().partition(|(_, of)| of.is_held_out);
+    let names =
+        |suites: Vec<(&SuiteRuns, _)>| suites.iter().map(|(runs, _)| runs.name.clone()).collect();
+    let mut calibration: Vec<String> =
+        suites.iter().filter(|(_, of)| of.calibrates).map(|(_, of)| of.motion.clone()).collect();
+    calibration.dedup();
     Ok(RecordedCampaign {
-        suites: suites.clone().count(),
-        runs: suites.map(|job| job.files.len()).sum(),
+        suites: suites.len(),
+        runs: suites.iter().map(|(runs, _)| runs.scatter.len()).sum(),
         recordings: lines.len(),
         kept: recorded.iter().map(|job| job.kept).sum(),
         bytes: recorded.iter().map(|job| job.bytes).sum(),
+        calibration,
+        training: names(training),
+        check: names(check),
     })
 }
 

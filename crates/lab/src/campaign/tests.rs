@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use reachtube_recordings::{DataSet, ReadOptions, RunSource};
+use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
+use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
 
 use super::options::CampaignOptions;
@@ -18,12 +19,18 @@ fn small(seed: u64) -> CampaignOptions {
         start_points: 2,
         runs: 3,
         longest: 0.5,
-        poses: 27,
-        friction: 1,
+        rest: 27,
+        one_joint: 1,
         excitation: 1,
         validation: 1,
-        robot: VirtualRobotParameters::default(),
+        ..CampaignOptions::default()
     }
+}
+
+fn demo(seed: u64) -> CampaignOptions {
+    let few =
+        CampaignOptions { motions: 2, calibration_motions: 0, held_out_motions: 1, ..small(1) };
+    CampaignOptions { seed, duration: Some(2.0), longest: 5.0, runs: 5, ..few.suites_only() }
 }
 
 fn run(options: &CampaignOptions, folder: &Path) -> Result<RecordedCampaign> {
@@ -59,7 +66,7 @@ fn the_folder_is_a_data_set_of_all_recordings() {
     assert_eq!(data.suites().len(), 4);
     let kinds =
         |kind: &str| data.runs().iter().filter(|run| run.kind.as_deref() == Some(kind)).count();
-    let counts = ["test_suite", "poses", "friction", "excitation", "validation"].map(kinds);
+    let counts = ["test_suite", "rest", "one-joint", "excitation", "validation"].map(kinds);
     assert_eq!(counts, [12, 2, 6, 1, 1]);
     for (index, entry) in data.runs().iter().enumerate() {
         let run = data.read(index, &ReadOptions::default()).unwrap();
@@ -79,7 +86,7 @@ fn the_folder_is_a_data_set_of_all_recordings() {
 #[test]
 fn a_seed_gives_the_same_bytes_and_another_seed_others() {
     let [once, again, other] =
-        [3, 3, 4].map(|seed| files(recorded(&CampaignOptions { poses: 2, ..small(seed) }).path()));
+        [3, 3, 4].map(|seed| files(recorded(&CampaignOptions { rest: 2, ..small(seed) }).path()));
     assert_eq!(once, again);
     let differing = once.iter().filter(|(file, bytes)| other.get(*file) != Some(bytes)).count();
     // Only truth.toml does not depend on the seed.
@@ -88,21 +95,21 @@ fn a_seed_gives_the_same_bytes_and_another_seed_others() {
 
 #[test]
 fn more_recordings_of_one_kind_leave_the_others_as_they_are() {
-    let small = CampaignOptions { poses: 2, friction: 0, ..small(5) };
+    let small = CampaignOptions { rest: 2, one_joint: 0, ..small(5) };
     let (few, more) = (
         files(recorded(&small).path()),
         files(recorded(&CampaignOptions { excitation: 2, ..small }).path()),
     );
     let same = |file: &str| few[Path::new(file)] == more[Path::new(file)];
     assert!(same("suites/M2b/M2b_03.csv") && same("excitation/excitation_001.csv"));
-    assert!(same("validation/validation_001.csv") && same("poses/poses_001.csv"));
+    assert!(same("validation/validation_001.csv") && same("rest/rest_001.csv"));
     assert!(!same("runs.csv"));
 }
 
 /// Whatever a stop leaves, the next start gives the bytes of a campaign without a stop.
 #[test]
 fn a_stopped_campaign_goes_on_to_the_same_bytes() {
-    let options = CampaignOptions { poses: 2, friction: 0, ..small(7) };
+    let options = CampaignOptions { rest: 2, one_joint: 0, ..small(7) };
     let whole = files(recorded(&options).path());
     let folder = tempfile::tempdir().unwrap();
     let after_run = |files: &BTreeMap<PathBuf, Vec<u8>>| {
@@ -137,7 +144,7 @@ fn foreign_folders_and_other_campaigns_are_left_alone() {
     assert!(error.contains("no campaign has written"), "{error}");
     assert_eq!(files(folder.path()).len(), 1);
 
-    let few = CampaignOptions { poses: 0, friction: 0, excitation: 0, validation: 0, ..small(1) };
+    let few = small(1).suites_only();
     let folder = recorded(&few);
     let before = files(folder.path());
     let payload = VirtualRobotParameters { payload_mass: 1.0, ..few.robot.clone() };
@@ -157,14 +164,80 @@ fn foreign_folders_and_other_campaigns_are_left_alone() {
 #[test]
 fn options_out_of_range_are_refused() {
     let folder = tempfile::tempdir().unwrap();
+    let endless =
+        VirtualRobotParameters { delay_cycles: f64::INFINITY, ..VirtualRobotParameters::default() };
     for (options, words) in [
         (CampaignOptions { motions: 0, ..small(1) }, "motions: 0 is not in 1"),
         (CampaignOptions { start_points: 27, ..small(1) }, "27 is not in 1 to 26"),
         (CampaignOptions { runs: 0, ..small(1) }, "runs: 0 is not in 1"),
-        (CampaignOptions { longest: f64::NAN, ..small(1) }, "NaN s; give 0.1 to 3600 s"),
+        (CampaignOptions { longest: f64::NAN, ..small(1) }, "runs of NaN s; give 0.1 to 3600 s"),
+        (CampaignOptions { duration: Some(f64::NAN), ..demo(1) }, "motions of NaN s; give 0.5"),
+        (CampaignOptions { held_out_motions: 2, ..demo(1) }, "2 are held out"),
+        (CampaignOptions { robot: endless, ..demo(1) }, "delay_cycles = inf is outside"),
     ] {
         let error = run(&options, folder.path()).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
     }
     assert!(files(folder.path()).is_empty());
+}
+
+fn suites(folder: &Path) -> Vec<Vec<Run>> {
+    let data = DataSet::open(folder).unwrap();
+    let read = |index: &usize| data.read(*index, &ReadOptions::default()).unwrap();
+    data.suites().iter().map(|suite| suite.runs.iter().map(read).collect()).collect()
+}
+
+#[test]
+fn a_demo_holds_out_its_last_motions_and_conformance_of_the_others_is_verified() {
+    let folder = tempfile::tempdir().unwrap();
+    let recorded = run(&demo(1), folder.path()).unwrap();
+    assert_eq!((&recorded.training, &recorded.check), (&names("M1"), &names("M2")));
+    assert_eq!(recorded.runs, 20);
+    let text = std::fs::read_to_string(folder.path().join("M1a/M1a_01.csv")).unwrap();
+    let header = "t,q1,q2,q3,q4,q5,q6,qd1,qd2,qd3,qd4,qd5,qd6,tau1,tau2,tau3,tau4,tau5,tau6,\
+                  temp1,temp2,temp3,temp4,temp5,temp6";
+    assert_eq!(text.lines().next(), Some(header));
+    assert_eq!(text.lines().count(), 1 + 451, "from a tenth of 2 s to their end, both included");
+    let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6)).unwrap();
+    let source = Box::new(DataSet::open(folder.path()).unwrap());
+    let problem = Problem::read(setup, source, &recorded.training, Keep::Needed, &Silent).unwrap();
+    let result = conform(&problem, &Silent, None).unwrap();
+    assert!(result.verdict.conformant);
+    assert_eq!(result.verdict.runs, 10);
+    assert!(problem.recordings().suites.iter().all(|suite| suite.shared.is_some()));
+    assert!(problem.recordings().notes.iter().all(|note| !note.contains("SHA-256")));
+    let input_radius = result.sets.input_set.radius;
+    assert!(input_radius.iter().all(|r| (0.01..8.0).contains(r)), "{input_radius:?} N m");
+}
+
+fn names(motion: &str) -> Vec<String> {
+    ["a", "b"].map(|start| format!("{motion}{start}")).to_vec()
+}
+
+#[test]
+fn runs_of_a_suite_have_one_input_and_their_temperature_rises() {
+    let folder = recorded(&demo(2));
+    let all = suites(folder.path());
+    assert!(all.iter().all(|suite| suite.iter().all(|run| run.torques == suite[0].torques)));
+    assert_ne!(all[0][0].torques, all[2][0].torques);
+    let data = DataSet::open(folder.path()).unwrap();
+    for suite in data.suites() {
+        let temperature: Vec<f64> =
+            suite.runs.iter().map(|run| data.runs()[*run].temperature.unwrap()).collect();
+        assert!(temperature.windows(2).all(|pair| pair[0] < pair[1]), "{temperature:?} °C");
+    }
+}
+
+#[test]
+fn runs_drift_apart_with_the_order_of_recording() {
+    let folder = recorded(&demo(1));
+    for suite in suites(folder.path()) {
+        let ends = |joint: usize| {
+            suite.iter().map(move |run| run.q(run.len() - 1)[joint]).collect::<Vec<f64>>()
+        };
+        let monotone = (0..6).map(ends).filter(|q| q.is_sorted() || q.iter().rev().is_sorted());
+        let spread = monotone.map(|q| (q[4] - q[0]).abs()).fold(0.0, f64::max);
+        // Starts differ by 0.003 rad at most.
+        assert!((0.01..1.0).contains(&spread), "{spread} rad");
+    }
 }

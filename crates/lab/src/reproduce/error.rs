@@ -12,15 +12,6 @@ pub enum ReproduceError {
     /// There is no campaign or no further motion to simulate.
     #[error("coverage: no campaigns or no further motions to simulate; give at least 1 of each")]
     NoCampaigns,
-    /// The file does not hold the options of a campaign.
-    #[error(
-        "{}: these are no options of a campaign; give a folder that reachtube campaign has written",
-        path.display()
-    )]
-    NoCampaign {
-        /// The file.
-        path: PathBuf,
-    },
     /// The campaign is one of another robot.
     #[error(
         "{}: the campaign's robot is {robot}, but Table III belongs to the LWA 4P; record it with \

@@ -177,8 +177,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let few =
             CampaignOptions { motions: 1, runs: 12, longest: 0.8, robot, ..Default::default() };
-        let options =
-            CampaignOptions { poses: 0, friction: 0, excitation: 0, validation: 0, ..few };
+        let options = few.suites_only();
         record(&Robot::lwa4p(), &options, folder.path(), &|_, _| ()).unwrap();
         let options = Table2Options::default();
         table2_and_suite(folder.path(), &options, None, &Silent).unwrap().1.drifting

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::error::ReproduceError;
 use super::figures::{PaperFigure, fig5};
+use crate::campaign::campaign_options;
 use crate::error::Result;
 use crate::virtual_robot::VirtualRobotParameters;
 
@@ -110,7 +111,7 @@ pub fn table3_and_fig5(
     progress: &dyn Fn(usize, usize),
 ) -> Result<(Table3, PaperFigure)> {
     let robot = Robot::lwa4p();
-    let arm = parameters(folder)?;
+    let arm = campaign_options(folder)?.robot;
     let truth = Robot::load(&folder.join("truth.toml").display().to_string())?;
     if truth.name() != robot.name() {
         return Err(ReproduceError::OtherRobot {
@@ -128,24 +129,14 @@ pub fn table3_and_fig5(
     Ok((Table3 { poses, rows, warnings: found.warnings }, figure))
 }
 
-/// Returns the parameters of the arm of a campaign.
-fn parameters(folder: &Path) -> Result<VirtualRobotParameters> {
-    let path = folder.join("campaign.json");
-    let text = reachtube_files::read_text(&path, "give the folder of a reachtube campaign")?;
-    let options = serde_json::from_str(&text).and_then(|mut mark: serde_json::Value| {
-        serde_json::from_value(mark["options"]["robot"].take())
-    });
-    options.map_err(|_| ReproduceError::NoCampaign { path }.into())
-}
-
 /// Returns the settings for the recordings of a campaign.
 fn settings(folder: &Path) -> IdentifySettings {
     let entry = |name: &str| -> Vec<LogEntry> {
         folder.join(name).exists().then(|| PathBuf::from(name).into()).into_iter().collect()
     };
     let mut settings = IdentifySettings {
-        rest: entry("poses"),
-        friction: entry("friction"),
+        rest: entry("rest"),
+        friction: entry("one-joint"),
         dynamic: entry("excitation"),
         validate: entry("validation"),
         ..IdentifySettings::default()
@@ -280,7 +271,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let few =
             CampaignOptions { motions: 1, start_points: 1, runs: 1, robot, ..Default::default() };
-        let options = CampaignOptions { poses: 300, excitation: 4, validation: 0, ..few };
+        let options = CampaignOptions { rest: 300, excitation: 4, validation: 0, ..few };
         record(&Robot::lwa4p(), &options, folder.path(), &|_, _| ()).unwrap();
         table3(folder.path(), &|_, _| ()).unwrap()
     }

@@ -173,7 +173,7 @@ impl Sizes {
             return Self { campaign, table1, table2, coverage };
         }
         Self {
-            campaign: CampaignOptions { motions: 4, runs: 3, poses: 100, friction: 1, ..campaign },
+            campaign: CampaignOptions { motions: 4, runs: 3, rest: 100, one_joint: 1, ..campaign },
             table1: Table1Options { motions: 5, ..table1 },
             table2: Table2Options { notions: vec![Notion::Hull], ..table2 },
             coverage: CoverageOptions { campaigns: 1, next: 100, ..coverage },
