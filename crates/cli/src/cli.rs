@@ -2,11 +2,10 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::commands::reproduce::{self, ReproduceCommand};
 use crate::commands::robot::{self, RobotCommand};
 use crate::commands::{
     r#abstract, campaign, check, completions, conform, convert, demo, excite, export, identify,
-    inspect, man, model, monitor, prepare, reach, report, stop, verify,
+    inspect, man, model, monitor, prepare, reach, report, reproduce, stop, verify,
 };
 use crate::error::Result;
 use crate::global::GlobalOptions;
@@ -57,8 +56,8 @@ Examples:
       enclose how far the robot moves after a stop
   robot-driver | reachtube monitor --model model.json
       report at once when a motion leaves the sets
-  reachtube reproduce table1
-      repeat the paper's simulations
+  reachtube reproduce --out paper
+      reproduce the paper's tables and figures on a virtual robot
 
 Exit codes: 0 conformant (or done), 1 not conformant, 2 error, 3 vacuous or undecided.
 
@@ -83,8 +82,7 @@ pub(crate) enum Command {
     Convert(convert::Arguments),
     Demo(demo::Arguments),
     Campaign(campaign::Arguments),
-    #[command(subcommand)]
-    Reproduce(ReproduceCommand),
+    Reproduce(reproduce::Arguments),
     #[command(subcommand)]
     Robot(RobotCommand),
     Completions(completions::Arguments),
@@ -112,7 +110,7 @@ pub(crate) fn run(cli: &Cli) -> Result<Outcome> {
         Command::Convert(args) => convert::run(args, json),
         Command::Demo(args) => demo::run(args, json),
         Command::Campaign(args) => campaign::run(args, json),
-        Command::Reproduce(command) => reproduce::run(command, json),
+        Command::Reproduce(args) => reproduce::run(args, json),
         Command::Robot(RobotCommand::Show(args)) => robot::show(args, json),
         Command::Completions(args) => completions::run(args, Cli::command()),
         Command::Man(args) => man::run(args, Cli::command()),

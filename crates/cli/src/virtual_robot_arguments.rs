@@ -8,13 +8,12 @@ use reachtube::virtual_robot::VirtualRobotParameters;
 use crate::error::{Error, Result};
 
 /// Where a file of parameters does not open.
-const REMEDY: &str =
-    "give a TOML file with parameters of the virtual robot, as docs/campaign.md has";
+const REMEDY: &str = "give a TOML file with parameters of the virtual robot, as docs/paper.md has";
 
 /// How the virtual robot differs from its nominal model.
 #[derive(Debug, Args)]
 pub(crate) struct VirtualRobotArguments {
-    /// TOML file with parameters of the virtual robot, see docs/campaign.md
+    /// TOML file with parameters of the virtual robot, see docs/paper.md
     #[arg(long, value_name = "FILE")]
     pub parameters: Option<PathBuf>,
 }

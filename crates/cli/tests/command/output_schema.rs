@@ -84,8 +84,10 @@ fn results_fit_the_schema() {
     run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");
     run("robot_show", "robot show arm.toml");
     run("abstract", "abstract --robot arm.toml");
-    run("reproduce_coverage", "reproduce coverage --campaigns 1 --next 20");
-    run("reproduce_table1", "reproduce table1 --robot arm.toml --motions 1 --orders 1");
+    run(
+        "reproduce",
+        "reproduce table1 coverage --robot arm.toml --motions 1 --orders 1 --campaigns 1 --next 20",
+    );
 }
 
 #[test]
@@ -123,7 +125,7 @@ fn a_campaign_fits_the_schema() {
     assert!(again.contains("2 of them by an earlier start"), "{again}");
     fits("inspect", &lab.run("inspect --data out --json").exits(0).json());
     let table = lab.run("reproduce table2 --data out --notions hull,exact --json").exits(0).json();
-    fits("reproduce_table2", &table);
+    fits("reproduce", &table);
     lab.write("robot.toml", "payload = 0.5\n");
     lab.run(&campaign).fails_with(&["robot.toml", "unknown field `payload`"]);
     lab.write("robot.toml", "cooling_time = -1.0\n");

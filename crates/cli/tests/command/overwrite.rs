@@ -41,7 +41,6 @@ fn files_of_others_are_overwritten_with_force_only() {
         ("e.csv", format!("{excite} --out e.csv")),
         ("windows/runs.csv", format!("{prepare} --out windows")),
         ("windows/0001_log.csv", format!("{prepare} --out windows")),
-        ("t.csv", "reproduce table1 --motions 1 --orders 1 --out t.csv".into()),
         ("pages/reachtube.1", "man --out pages".into()),
     ] {
         let lab = lab();

@@ -7,7 +7,7 @@ use crate::output_schema::fits;
 fn table_1_is_printed_beside_the_papers() {
     let lab = Lab::new();
     let command = "reproduce table1 --motions 2 --orders 1,6 --model3-up-to 1";
-    let text = lab.run(&format!("{command} --out table1.csv")).exits(0).stdout;
+    let text = lab.run(command).exits(0).stdout;
     for part in [
         "2 random point-to-point motions (seed 1) within 1.571 rad of 0",
         "0.0408",
@@ -15,8 +15,7 @@ fn table_1_is_printed_beside_the_papers() {
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
-    assert_eq!(lab.read("table1.csv").lines().count(), 1 + (3 + 2) * 2 * 2);
-    let table = lab.run(&format!("{command} --json")).exits(0).json();
+    let table = &lab.run(&format!("{command} --json")).exits(0).json()["table1"];
     assert_eq!(table["cells"].as_array().unwrap().len(), (3 + 2) * 2);
     assert_eq!(table["cells"][0]["paper"]["error"], 0.004);
 }
@@ -29,7 +28,7 @@ fn table_1_of_another_robot() {
         .run("reproduce table1 --robot arm.toml --motions 1 --orders 1,3 --json")
         .exits(0)
         .json();
-    let cells = table["cells"].as_array().unwrap();
+    let cells = table["table1"]["cells"].as_array().unwrap();
     assert_eq!(cells.len(), (3 + 3) * 2);
     assert!(cells.iter().all(|cell| cell.get("paper") == Some(&serde_json::Value::Null)));
     lab.run("reproduce table1 --motions 0").fails_with(&["no motions", "give at least 1"]);
@@ -55,6 +54,7 @@ fn table_2_is_printed_beside_the_papers() {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
     let table = lab.run("reproduce table2 --data out --notions hull,exact --json").exits(0).json();
+    let table = &table["table2"];
     let cost = |case: usize| table["cases"][case]["cost"].as_f64().unwrap();
     // Positions ask for less than all states, and the hull for less than the set itself.
     assert!(cost(1) < cost(0) && cost(0) <= cost(2) && cost(1) <= cost(3) && cost(3) < cost(2));
@@ -69,8 +69,8 @@ fn table_2_is_printed_beside_the_papers() {
         table["cases"][1]["sets"]["initial_set"]["radius"][0].as_f64().unwrap()
     };
     let free = "reproduce table2 --data out --initial-limit none --json";
-    let free = lab.run(free).exits(0).json();
-    assert!(width(&free) > 2.0 * width(&table), "{} {}", width(&free), width(&table));
+    let free = &lab.run(free).exits(0).json()["table2"];
+    assert!(width(free) > 2.0 * width(table), "{} {}", width(free), width(table));
     lab.run("reproduce table2 --data nowhere").fails_with(&["nowhere"]);
     lab.run("reproduce table2 --data out --suites X9").fails_with(&["X9"]);
     lab.run("reproduce table2 --data data").fails_with(&["joint"]);
@@ -83,25 +83,23 @@ fn figures_of_the_paper_are_drawn_of_a_campaign() {
     let few = "--motions 2 --start-points 2 --runs 3 --longest 0.4 --rest 0 --one-joint 0 \
                --excitation 0 --validation 0";
     lab.run(&format!("campaign --out out {few}")).exits(0);
-    for number in 1..=4 {
-        let figure = format!("reproduce fig{number} --data out --suite M2b");
-        let value = lab.run(&format!("{figure} --json")).exits(0).json();
-        fits("reproduce_figure", &value);
-        assert_eq!(value["number"], number);
-        let svg = lab.read(&format!("fig{number}.svg"));
+    let draw = "reproduce fig1 fig2 fig3 fig4 --data out --suite M2b --out figures";
+    let value = lab.run(&format!("{draw} --json")).exits(0).json();
+    fits("reproduce", &value);
+    let words = lab.run(&format!("{draw} --force")).exits(0).stdout;
+    for (number, figure) in (1..).zip(value["figures"].as_array().unwrap()) {
+        assert_eq!(figure["number"], number);
+        let svg = lab.read(&format!("figures/fig{number}.svg"));
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
-        let words = lab.run(&figure).exits(0).stdout;
-        assert!(words.starts_with(&format!("Fig. {number}: ")) && words.contains("M2"), "{words}");
+        assert!(words.contains(&format!("Fig. {number}: ")) && words.contains("M2"), "{words}");
     }
     // The runs spread less than the set that encloses them, and positions ask for less.
-    let figure = lab.run("reproduce fig4 --data out --suite M2b --json").exits(0).json();
-    for row in figure["table"]["rows"].as_array().unwrap() {
+    for row in value["figures"][3]["table"]["rows"].as_array().unwrap() {
         let cell = |k: usize| row[k].as_str().unwrap().parse::<f64>().unwrap();
         assert!(cell(1) <= cell(2) && cell(1) <= cell(3) && cell(4) <= cell(5), "{row}");
     }
-    let starts = lab.run("reproduce fig3 --data out --suite M2b --json").exits(0).json();
-    assert_eq!(starts["table"]["rows"].as_array().unwrap().len(), 2);
-    lab.run("reproduce fig1 --data out --suite X9").fails_with(&["X9"]);
+    assert_eq!(value["figures"][2]["table"]["rows"].as_array().unwrap().len(), 2);
+    lab.run("reproduce fig1 --data out --suite X9 --force").fails_with(&["X9"]);
     lab.run("reproduce fig3 --data none").fails_with(&["none"]);
     std::fs::remove_file(lab.path("out/campaign.json")).unwrap();
     lab.run("reproduce fig3 --data out").fails_with(&["campaign.json", "folder of a campaign"]);
@@ -111,8 +109,8 @@ fn figures_of_the_paper_are_drawn_of_a_campaign() {
 #[test]
 fn the_whole_experiment_is_one_page() {
     let lab = Lab::new();
-    let value = lab.run("reproduce all --small --out paper --json").exits(0).json();
-    fits("reproduce_all", &value);
+    let value = lab.run("reproduce --small --out paper --json").exits(0).json();
+    fits("reproduce", &value);
     let page = lab.read("paper/paper.html");
     for part in ["Table I:", "Table II, velocity conformant", "Fig. 4.", "calibration bound"] {
         assert!(page.contains(part), "{part}");
@@ -126,9 +124,10 @@ fn the_whole_experiment_is_one_page() {
         std::fs::remove_file(lab.path(&format!("paper/{file}"))).unwrap();
     }
     let numbers = lab.read("paper/paper.json");
-    lab.run("reproduce all --small --out paper").exits(0);
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&numbers).unwrap(), value);
+    lab.run("reproduce --small --out paper").exits(0);
     assert_eq!(lab.read("paper/paper.html"), page);
     assert_eq!(lab.read("paper/paper.json"), numbers);
     lab.write("paper/fig2.svg", "mine");
-    lab.run("reproduce all --small --out paper").fails_with(&["fig2.svg"]);
+    lab.run("reproduce --small --out paper").fails_with(&["fig2.svg"]);
 }

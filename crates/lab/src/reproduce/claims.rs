@@ -74,8 +74,7 @@ const TRAJECTORIES: &str = "The paper's two trajectories are unpublished. Ours a
 
 impl Table1 {
     /// Lays what the paper concludes from Table I beside ours.
-    #[must_use]
-    pub(crate) fn claims(&self) -> Vec<Claim> {
+    pub(super) fn claims(&self) -> Vec<Claim> {
         let mean = |kind, order, speed| self.cell(kind, order, speed).and_then(|cell| cell.mean);
         let words = |values: &[Option<f64>]| {
             let word = |value: &Option<f64>| value.map_or_else(|| "-".into(), four_decimals);
@@ -169,7 +168,7 @@ impl Table1 {
         .because(
             "Model 3 is the best of all near its expansion point and of no use far from it; our \
              motions stay within \u{3c0}/2 of it. With --range 3.1416 four of 50 diverge at order \
-             5 (docs/table1.md).",
+             5.",
         )
     }
 }
@@ -179,8 +178,7 @@ type Widths = Vec<(f64, f64)>;
 
 impl Table2 {
     /// Lays what the paper concludes from Table II beside ours, by the cases in the notion `hull`.
-    #[must_use]
-    pub(crate) fn claims(&self) -> Vec<Claim> {
+    pub(super) fn claims(&self) -> Vec<Claim> {
         let of = |states: States| {
             self.cases.iter().find(|case| (case.notion, case.states) == (Notion::Hull, states))
         };
@@ -271,8 +269,7 @@ fn alike(widths: &Widths) -> usize {
 
 impl Exemplary {
     /// Lays what the paper concludes from Fig. 4 beside ours.
-    #[must_use]
-    pub(crate) fn claims(&self) -> Vec<Claim> {
+    pub(super) fn claims(&self) -> Vec<Claim> {
         let n = self.joints();
         let narrower = (0..n).filter(|joint| {
             let [both, positions] = self.widths(*joint);
@@ -304,8 +301,7 @@ impl Exemplary {
 
 impl Table3 {
     /// Lays the identified model beside the arm that moved.
-    #[must_use]
-    pub(crate) fn claims(&self) -> Vec<Claim> {
+    pub(super) fn claims(&self) -> Vec<Claim> {
         let deviations = |is_biased: bool| -> Vec<f64> {
             let of = |row: &&Table3Row| row.effects.is_empty() != is_biased;
             self.rows.iter().filter(of).filter_map(|row| row.deviation).map(f64::abs).collect()
@@ -343,8 +339,7 @@ impl Table3 {
 
 impl Coverage {
     /// Lays the bounds beside how often they were wrong.
-    #[must_use]
-    pub(crate) fn claims(&self) -> Vec<Claim> {
+    pub(super) fn claims(&self) -> Vec<Claim> {
         let claim = |row: &CoverageRow| {
             Claim::new(
                 "Next motion",

@@ -6,18 +6,18 @@ use reachtube_conform::next_motion::Trend;
 use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::States;
 use reachtube_conform::{
-    Check, Conformance, Keep, Model, Problem, Progress, Setup, Silent, Tube, Verdict, reach,
+    Check, Conformance, Keep, Model, Problem, Setup, Silent, Tube, Verdict, reach,
 };
 use reachtube_recordings::DataSet;
 
 use super::error::ReproduceError;
-use super::table2::{Found, Table2, Table2Options};
+use super::table2::Found;
 use crate::error::Result;
 use reachtube_page::{Sources, SuiteFigure, suite_figures};
 
 /// One suite with its recordings, its input, and the reachable sets of both cases of Table II.
 #[derive(Debug, Clone)]
-pub struct Exemplary {
+pub(crate) struct Exemplary {
     /// The recordings in the reachable set of the velocity conformant case; the second band is the
     /// set of the position conformant case.
     pub figure: SuiteFigure,
@@ -27,23 +27,6 @@ pub struct Exemplary {
     pub drifting: [usize; 2],
     /// The joints of this suite that follow the order of the runs.
     pub trends: Vec<Trend>,
-}
-
-/// Makes Table II for recordings, and takes one suite under the sets of its first two cases; where
-/// none is named, the one whose runs end furthest apart in all joints.
-///
-/// # Errors
-///
-/// As [`table2`](super::table2); [`ReproduceError::NoSuite`].
-pub fn table2_and_suite(
-    folder: &Path,
-    options: &Table2Options,
-    suite: Option<&str>,
-    progress: &(dyn Progress + Sync),
-) -> Result<(Table2, Exemplary)> {
-    let found = Found::new(folder, options, progress)?;
-    let exemplary = Exemplary::new(folder, &found, suite)?;
-    Ok((found.table(options), exemplary))
 }
 
 impl Exemplary {
@@ -168,6 +151,7 @@ fn suite_under(
 mod tests {
     use reachtube_robot::Robot;
 
+    use super::super::table2::Table2Options;
     use super::*;
     use crate::campaign::{CampaignOptions, record};
     use crate::virtual_robot::VirtualRobotParameters;
@@ -179,8 +163,8 @@ mod tests {
             CampaignOptions { motions: 1, runs: 12, longest: 0.8, robot, ..Default::default() };
         let options = few.suites_only();
         record(&Robot::lwa4p(), &options, folder.path(), &|_, _| ()).unwrap();
-        let options = Table2Options::default();
-        table2_and_suite(folder.path(), &options, None, &Silent).unwrap().1.drifting
+        let found = Found::new(folder.path(), &Table2Options::default(), &Silent).unwrap();
+        Exemplary::new(folder.path(), &found, None).unwrap().drifting
     }
 
     #[test]

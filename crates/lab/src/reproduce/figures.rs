@@ -46,7 +46,7 @@ pub struct PaperFigure {
 /// # Errors
 ///
 /// As [`suite_svg`].
-pub fn fig1(suite: &Exemplary) -> Result<PaperFigure> {
+pub(super) fn fig1(suite: &Exemplary) -> Result<PaperFigure> {
     let joint = suite.widest_joint();
     let figure = SuiteFigure { inner: None, ..of_joint(&suite.figure, joint) };
     let (runs, name) = (figure.runs.len(), &figure.suite);
@@ -70,7 +70,7 @@ pub fn fig1(suite: &Exemplary) -> Result<PaperFigure> {
 /// # Errors
 ///
 /// As [`suite_svg`].
-pub fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
+pub(super) fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
     let (joint, n) = (suite.widest_joint(), suite.joints());
     let SuiteFigure { times, band, runs, joints, .. } = &suite.figure;
     let line = |times: &[f64], values: &[f64], colour| Series {
@@ -121,7 +121,7 @@ pub fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
 ///
 /// [`CampaignError`](crate::campaign::CampaignError) for a folder that is not a campaign's;
 /// [`ReproduceError::UnknownSuite`]; as [`suite_svg`].
-pub fn fig3(campaign: &Path, suite: &str) -> Result<PaperFigure> {
+pub(super) fn fig3(campaign: &Path, suite: &str) -> Result<PaperFigure> {
     let planned = planned_suites(campaign)?;
     let of_suite = planned.iter().find(|plan| plan.name == suite);
     let of_suite = of_suite.ok_or_else(|| ReproduceError::UnknownSuite { suite: suite.into() })?;
@@ -217,7 +217,7 @@ fn planned_chart(motion: &Motion, starts: &[OpenLoop], joint: usize) -> Chart {
 /// # Errors
 ///
 /// As [`suite_svg`].
-pub fn fig4(suite: &Exemplary) -> Result<PaperFigure> {
+pub(super) fn fig4(suite: &Exemplary) -> Result<PaperFigure> {
     let by = if suite.figure.runs.iter().all(|run| !run.temperatures.is_empty()) {
         "temperature, each axis over its own range"
     } else {

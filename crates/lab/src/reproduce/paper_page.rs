@@ -1,74 +1,64 @@
 //! One page that reads like Sec. V and the appendix of the paper.
 
-use std::io::Write;
-
 use maud::{Markup, PreEscaped, html};
 
 use super::claims::Claim;
 use super::coverage::Coverage;
-use super::exemplary::Exemplary;
-use super::figures::PaperFigure;
+use super::reproduced::Reproduced;
 use super::table1::Table1;
 use super::table2::Table2;
 use super::table3::Table3;
+use crate::campaign::CampaignOptions;
+use reachtube_files::TOOL;
 use reachtube_page::{Error, TextTable, charts_svg, document, long_table, section};
 
 /// What the page shows.
-#[derive(Debug, Clone)]
-pub struct PaperPage<'a> {
-    /// Table I.
-    pub table1: &'a Table1,
-    /// Table II.
-    pub table2: &'a Table2,
-    /// Table III.
-    pub table3: &'a Table3,
-    /// The suite of Figs. 1, 2 and 4.
-    pub exemplary: &'a Exemplary,
-    /// The figures.
-    pub figures: &'a [PaperFigure],
-    /// The bounds for the next motion.
-    pub coverage: &'a Coverage,
-    /// How the page was made: name and value.
-    pub facts: Vec<(String, String)>,
+struct PaperPage<'a> {
+    computed: &'a Reproduced,
+    table1: &'a Table1,
+    table2: &'a Table2,
+    table3: &'a Table3,
+    coverage: &'a Coverage,
 }
 
-impl PaperPage<'_> {
-    /// Returns what the paper claims beside ours.
-    #[must_use]
-    pub fn claims(&self) -> Vec<Claim> {
-        [
-            self.table1.claims(),
-            self.table2.claims(),
-            self.exemplary.claims(),
-            self.table3.claims(),
-            self.coverage.claims(),
-        ]
-        .concat()
-    }
-
-    /// Writes the page as one HTML file that needs no other file.
+impl Reproduced {
+    /// Returns the page as one HTML file that needs no other file, if all tables are there.
+    /// `command` is what was typed.
     ///
     /// # Errors
     ///
-    /// Fails for numbers that cannot be drawn, and where `out` fails.
-    pub fn write_html(&self, out: &mut impl Write) -> Result<(), Error> {
+    /// Fails for numbers that cannot be drawn.
+    pub fn page(&self, command: &str) -> Result<Option<String>, Error> {
+        let Self { table1, table2, table3, coverage, .. } = self;
+        match (table1, table2, table3, coverage) {
+            (Some(table1), Some(table2), Some(table3), Some(coverage)) => {
+                PaperPage { computed: self, table1, table2, table3, coverage }
+                    .html(command)
+                    .map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+impl PaperPage<'_> {
+    fn html(&self, command: &str) -> Result<String, Error> {
         let body = html! {
             (section("What came out", &self.summary()))
             (section("Model abstractions in simulation", &self.abstractions()))
             (section("Conformance testing and optimal uncertainty sets", &self.conformance()))
             (section("Bounds for unseen motions", &self.unseen()?))
             (section("Appendix: dynamic parameter identification", &self.identification()))
-            (section("How this page was made", &self.made()))
+            (section("How this page was made", &self.made(command)))
         };
         let title = "Reachset conformance of forward dynamic models, reproduced";
         let subtitle = "The experiment of Liu and Althoff (IROS 2018), Sec. V, on a virtual \
                         Schunk LWA 4P";
-        out.write_all(document(title, subtitle, &body, &Markup::default()).as_bytes())?;
-        Ok(())
+        Ok(document(title, subtitle, &body, &Markup::default()))
     }
 
     fn summary(&self) -> Markup {
-        let claims = self.claims();
+        let claims = self.computed.claims();
         let hold = claims.iter().filter(|claim| claim.holds).count();
         let row = |claim: &Claim| {
             let holds = if claim.holds { "yes" } else { "no" };
@@ -99,7 +89,7 @@ impl PaperPage<'_> {
                  limited to the recorded starts, since the paper\u{2019}s seem to be. The \
                  motions of Table I stay within \u{3c0}/2 of the expansion point, as the public \
                  suites do. Agreement in these sizes is therefore no evidence. The other \
-                 parameters are typical of such arms (docs/campaign.md)."
+                 parameters are typical of such arms (docs/paper.md)."
             }
             (long_table(&table))
             @for claim in others() {
@@ -109,7 +99,6 @@ impl PaperPage<'_> {
     }
 
     fn abstractions(&self) -> Markup {
-        let options = &self.table1.options;
         html! {
             p {
                 "Models 1, 2 and 3 of several orders and the rigid-body dynamics (Featherstone's \
@@ -118,12 +107,8 @@ impl PaperPage<'_> {
             }
             (long_table(&TextTable {
                 title: format!(
-                    "Table I: simulation error of the model abstractions. {} over {} random \
-                     motions of {:.2} s (slow) and {:.2} s (fast)",
-                    self.table1.table().title,
-                    options.motions,
-                    self.table1.durations[0],
-                    self.table1.durations[1]
+                    "Table I: simulation error of the model abstractions. {}",
+                    self.table1.table().title
                 ),
                 ..self.table1.table()
             }))
@@ -172,13 +157,14 @@ impl PaperPage<'_> {
 
     /// Returns a figure with its caption and its numbers.
     fn figure(&self, number: u8) -> Markup {
-        let Some(figure) = self.figures.iter().find(|figure| figure.number == number) else {
+        let Some(figure) = self.computed.figures.iter().find(|figure| figure.number == number)
+        else {
             return Markup::default();
         };
         let is_same = |other: &TextTable| {
             other.title == figure.table.title && other.rows == figure.table.rows
         };
-        let mut before = self.figures.iter().filter(|other| other.number < number);
+        let mut before = self.computed.figures.iter().filter(|other| other.number < number);
         let is_known = before.any(|other| is_same(&other.table));
         html! {
             figure {
@@ -227,17 +213,29 @@ impl PaperPage<'_> {
         }
     }
 
-    fn made(&self) -> Markup {
-        let table = TextTable {
-            title: "Settings".into(),
-            header: vec!["".into(), "".into()],
-            rows: self
-                .facts
-                .iter()
-                .map(|(name, value)| vec![name.clone(), value.clone()])
-                .collect(),
-        };
-        html! { (long_table(&table)) }
+    fn made(&self, command: &str) -> Markup {
+        let mut facts = vec![("Written by", TOOL.to_string()), ("Command", command.into())];
+        if let Some(campaign) = &self.computed.campaign {
+            let CampaignOptions { motions, start_points, runs, longest, robot, .. } = campaign;
+            let parameters = serde_json::to_value(robot).expect("parameters are numbers");
+            let parameters = parameters.as_object().into_iter().flatten();
+            let parameters: Vec<String> =
+                parameters.map(|(name, value)| format!("{name} = {value}")).collect();
+            let sizes = format!(
+                "{motions} motions, {start_points} starting points, {runs} runs of up to \
+                 {longest} s"
+            );
+            facts.push(("Campaign", sizes));
+            facts.push(("Virtual robot (docs/paper.md)", parameters.join(", ")));
+        }
+        let row = |(name, value): (&str, String)| vec![name.to_string(), value];
+        html! {
+            (long_table(&TextTable {
+                title: "Settings".into(),
+                header: vec!["".into(), "".into()],
+                rows: facts.into_iter().map(row).collect(),
+            }))
+        }
     }
 }
 

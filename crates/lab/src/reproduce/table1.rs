@@ -1,7 +1,6 @@
 //! Table I: the error of the models in simulation.
 
 use std::f64::consts::FRAC_PI_2;
-use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use rayon::prelude::*;
@@ -210,28 +209,5 @@ impl Table1 {
     #[must_use]
     pub fn cell(&self, model: ModelKind, order: u32, speed: Speed) -> Option<&Cell> {
         self.cells.iter().find(|cell| (cell.model, cell.order, cell.speed) == (model, order, speed))
-    }
-
-    /// Writes the error of each motion \[rad/s\] as CSV with the columns order, model, speed,
-    /// motion and velocity_error; the error is `inf` where the model diverged.
-    ///
-    /// # Errors
-    ///
-    /// Fails where `out` fails.
-    pub fn write_csv(&self, out: &mut dyn Write) -> std::io::Result<()> {
-        writeln!(out, "order,model,speed,motion,velocity_error")?;
-        for cell in &self.cells {
-            for (motion, error) in cell.errors.iter().enumerate() {
-                let (model, error) = (u32::from(cell.model), error.unwrap_or(f64::INFINITY));
-                writeln!(
-                    out,
-                    "{},{model},{},{},{error}",
-                    cell.order,
-                    cell.speed.name(),
-                    motion + 1
-                )?;
-            }
-        }
-        Ok(())
     }
 }

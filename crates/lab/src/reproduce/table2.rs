@@ -96,22 +96,13 @@ pub(super) struct Found {
     pub cases: Vec<FoundCase>,
 }
 
-/// Finds the sets of model 1, p = 1, of the LWA 4P for recordings of compensated torques. The sets
-/// contain the origin, as the paper's do.
-///
-/// # Errors
-///
-/// As [`Problem::read`] and [`conform`].
-pub fn table2(
-    folder: &Path,
-    options: &Table2Options,
-    progress: &(dyn Progress + Sync),
-) -> Result<Table2> {
-    Ok(Found::new(folder, options, progress)?.table(options))
-}
-
 impl Found {
-    /// Finds the sets of [`table2`].
+    /// Finds the sets of model 1, p = 1, of the LWA 4P for recordings of compensated torques. The
+    /// sets contain the origin, as the paper's do.
+    ///
+    /// # Errors
+    ///
+    /// As [`Problem::read`] and [`conform`].
     pub(super) fn new(
         folder: &Path,
         options: &Table2Options,

@@ -86,7 +86,7 @@ impl Table3 {
 }
 
 /// Identifies the LWA 4P from the recordings of a [`campaign`](crate::campaign), and compares it
-/// with the arm that moved and with the paper.
+/// with the arm that moved and with the paper. Fig. 5 shows the same identification.
 ///
 /// Gravity and friction come from static poses and slow motions, the inertial parameters from
 /// exciting motions, as in the paper's appendix. The velocity is the derivative of the position,
@@ -94,19 +94,9 @@ impl Table3 {
 ///
 /// # Errors
 ///
-/// - [`ReproduceError`] if the folder is not a campaign of the LWA 4P.
-/// - As [`identify`].
-pub fn table3(folder: &Path, progress: &dyn Fn(usize, usize)) -> Result<Table3> {
-    Ok(table3_and_fig5(folder, progress)?.0)
-}
-
-/// Makes [`table3`], and draws Fig. 5 of the same identification: the fits of Coulomb friction over
-/// the load and of viscous friction over the velocity, of every joint.
-///
-/// # Errors
-///
-/// As [`table3`]; numbers that cannot be drawn.
-pub fn table3_and_fig5(
+/// [`CampaignError`](crate::campaign::CampaignError) and [`ReproduceError`] if the folder is not a
+/// campaign of the LWA 4P; as [`identify`]; numbers that cannot be drawn.
+pub(super) fn table3_and_fig5(
     folder: &Path,
     progress: &dyn Fn(usize, usize),
 ) -> Result<(Table3, PaperFigure)> {
@@ -273,7 +263,7 @@ mod tests {
             CampaignOptions { motions: 1, start_points: 1, runs: 1, robot, ..Default::default() };
         let options = CampaignOptions { rest: 300, excitation: 4, validation: 0, ..few };
         record(&Robot::lwa4p(), &options, folder.path(), &|_, _| ()).unwrap();
-        table3(folder.path(), &|_, _| ()).unwrap()
+        table3_and_fig5(folder.path(), &|_, _| ()).unwrap().0
     }
 
     fn largest<'a>(rows: impl Iterator<Item = &'a Table3Row>) -> f64 {

@@ -5,10 +5,11 @@ use reachtube_conform::settings::States;
 use reachtube_reach::Disturbance;
 
 use super::coverage::{Coverage, CoverageRow};
+use super::figures::PaperFigure;
 use super::paper::Paper;
 use super::speed::Speed;
 use super::table1::{Cell, Table1};
-use super::table2::Table2Case;
+use super::table2::{Table2, Table2Case};
 use super::table3::{Effect, Part, Table3, Table3Row};
 use reachtube_page::{Chart, Series, TextTable};
 use reachtube_scalar::number::{four_decimals, interval, significant};
@@ -21,17 +22,46 @@ const EQUAL: [u8; 3] = [140, 149, 159];
 /// A parameter of the arm below this is rounding of the combination it is part of, in SI units.
 const ROUNDING: f64 = 1e-12;
 
+/// What is printed of a table or figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sheet {
+    /// Sentences about it, one per line.
+    pub words: Vec<String>,
+    /// Its numbers.
+    pub tables: Vec<TextTable>,
+}
+
 impl Table1 {
-    /// Returns the table.
-    #[must_use]
-    pub fn table(&self) -> TextTable {
+    pub(super) fn sheet(&self) -> Sheet {
+        let options = &self.options;
+        let mut words = vec![format!(
+            "Table I for {}: errors of the models against the articulated-body algorithm; inputs \
+             held over 4 ms",
+            self.robot
+        )];
+        if options.orders.iter().any(|order| *order > options.model3_up_to) {
+            words.push(format!(
+                "-: not simulated; --model3-up-to {} limits the order of model 3",
+                options.model3_up_to
+            ));
+        }
+        Sheet { words, tables: vec![self.table()] }
+    }
+
+    pub(super) fn table(&self) -> TextTable {
         let rows = self.options.orders.iter();
         let rows = rows.flat_map(|order| Speed::ALL.map(|speed| self.row(*order, speed)));
         let header = ["p", "speed", "model 1", "paper", "model 2", "paper", "model 3", "paper"];
+        let (options, [slow, fast]) = (&self.options, self.durations);
         TextTable {
-            title: "Mean |velocity error| over time and joints [rad/s], mean ± standard deviation \
-                    over the motions"
-                .into(),
+            title: format!(
+                "Mean |velocity error| over time and joints [rad/s], mean ± standard deviation \
+                 over {} random point-to-point motions (seed {}) within {} rad of 0, of {slow:.2} \
+                 s (slow) and {fast:.2} s (fast)",
+                options.motions,
+                options.seed,
+                four_decimals(options.range)
+            ),
             header: header.map(String::from).to_vec(),
             rows: rows.collect(),
         }
@@ -63,10 +93,24 @@ fn cell_pair(cell: Option<&Cell>) -> [String; 2] {
     [simulated, paper]
 }
 
+impl Table2 {
+    pub(super) fn sheet(&self) -> Sheet {
+        let heading = format!(
+            "Table II: uncertainty sets of model 1 (p = 1) for {} recordings in {} suites",
+            self.runs, self.suites
+        );
+        let warnings = self.cases.iter().flat_map(|case| &case.warnings);
+        let warnings = warnings.map(|warning| format!("warning: {warning}"));
+        Sheet {
+            words: std::iter::once(heading).chain(warnings).collect(),
+            tables: self.cases.iter().map(Table2Case::table).collect(),
+        }
+    }
+}
+
 impl Table2Case {
     /// Returns the half of the table, with the paper's bounds beside ours.
-    #[must_use]
-    pub fn table(&self) -> TextTable {
+    pub(super) fn table(&self) -> TextTable {
         let row = |joint: usize| {
             let papers = [self.paper.x0_q, self.paper.x0_qd, self.paper.u].map(|sets| sets[joint]);
             let pairs = self.bounds(joint).into_iter().zip(papers);
@@ -96,9 +140,21 @@ impl Table2Case {
 }
 
 impl Table3 {
+    pub(super) fn sheet(&self) -> Sheet {
+        let heading = format!(
+            "Table III: the model of the LWA 4P, identified from {} static poses, slow motions and \
+             exciting motions (SI units)",
+            self.poses
+        );
+        let warnings = self.warnings.iter().map(|warning| format!("warning: {warning}"));
+        Sheet {
+            words: std::iter::once(heading).chain(warnings).collect(),
+            tables: self.tables().to_vec(),
+        }
+    }
+
     /// Returns the three parts of the table: friction, gravity, inertial parameters.
-    #[must_use]
-    pub fn tables(&self) -> [TextTable; 3] {
+    pub(super) fn tables(&self) -> [TextTable; 3] {
         let parts = [
             (Part::Friction, "friction parameters"),
             (Part::Gravity, "gravity model"),
@@ -142,10 +198,30 @@ impl Table3Row {
     }
 }
 
+impl PaperFigure {
+    pub(super) fn sheet(&self) -> Sheet {
+        let caption = format!("Fig. {}: {}", self.number, self.caption);
+        Sheet { words: vec![caption, self.paper.clone()], tables: vec![self.table.clone()] }
+    }
+}
+
 impl Coverage {
+    pub(super) fn sheet(&self) -> Sheet {
+        let Self { motions, held_out, calibrating, chosen_by, .. } = self;
+        let words = format!(
+            "Bounds for the next motion (seed {}): the hold-out bound is for sets found on {} \
+             motions, by the other {held_out}; the calibration bounds are for sets found on {}, \
+             scaled to hold the other {calibrating}; models that were chosen in several ways are \
+             calibrated by {chosen_by} motions",
+            self.options.seed,
+            motions - held_out,
+            motions - calibrating,
+        );
+        Sheet { words: vec![words], tables: vec![self.table()] }
+    }
+
     /// Returns the table: how often each statement was wrong, beside how often it may be.
-    #[must_use]
-    pub fn table(&self) -> TextTable {
+    pub(super) fn table(&self) -> TextTable {
         let row = |row: &CoverageRow| {
             vec![
                 row.statement.clone(),
