@@ -37,7 +37,6 @@ impl Motion {
         Self { start, travel, duration }
     }
 
-    /// Returns the number of whole cycles that the motion lasts.
     pub(crate) fn cycles(&self) -> usize {
         (self.duration / SAMPLE_TIME).round() as usize
     }

@@ -10,7 +10,6 @@ pub(crate) fn uniform(random: &mut SplitMix64, low: f64, high: f64) -> f64 {
     low + (high - low) * random.random::<f64>()
 }
 
-/// Draws 1 or -1, each with probability one half.
 pub(crate) fn sign(random: &mut SplitMix64) -> f64 {
     if random.next_u64() >> 63 == 0 { 1.0 } else { -1.0 }
 }

@@ -5,7 +5,6 @@ use thiserror::Error;
 /// The result of a fallible function of this crate.
 pub(crate) type Result<T> = core::result::Result<T, Error>;
 
-/// Returns the line, from 1, of a place in a text.
 pub(crate) fn line_of(text: &str, at: usize) -> usize {
     text[..at].matches('\n').count() + 1
 }

@@ -95,7 +95,6 @@ fn row(v: &Verification) -> Vec<String> {
     row
 }
 
-/// Returns the largest margin of each link as a table.
 fn margins(all: &[Verification], body: &Body) -> Table {
     let mut rows: Vec<Vec<String>> = Vec::new();
     let mut links: Vec<usize> = body.capsules().iter().map(|capsule| capsule.joint).collect();

@@ -43,7 +43,7 @@ Examples:
   reachtube reproduce table2 --data recordings --suites A,B,D,E
   reachtube reproduce fig3 fig4 --data campaign --out figures
 
-The recordings are those of `reachtube campaign`, which are made in the folder if they are missing.
+`reachtube campaign` makes the recordings, in the folder of --out, if they are missing.
 A run that was stopped can be started again, with the same result. The paper's recordings are not
 public but for four suites, so only sizes and order can agree. The positions of X0 in Table II reach
 no further than the recorded starts, as they seem to in the paper.

@@ -56,7 +56,6 @@ impl ExcitingMotion {
         Self { centre, harmonics }
     }
 
-    /// Returns the number of cycles.
     pub(super) fn cycles() -> usize {
         (DURATION / SAMPLE_TIME).round() as usize + 1
     }
@@ -75,14 +74,12 @@ impl ExcitingMotion {
     }
 }
 
-/// Returns the growth from 0 to 1 with its two derivatives.
 fn ramp(t: f64) -> [f64; 3] {
     let grow = Motion { start: vec![0.0], travel: vec![1.0], duration: RAMP };
     let Planned { q, qd, qdd } = grow.at(t);
     [q[0], qd[0], qdd[0]]
 }
 
-/// Returns the series with its two derivatives.
 fn series(harmonics: &[Harmonic], t: f64) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for [amplitude, frequency, phase] in harmonics {

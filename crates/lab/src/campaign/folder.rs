@@ -59,13 +59,11 @@ impl<'a> Folder<'a> {
         job.files.iter().all(|file| self.root.join(file).exists())
     }
 
-    /// Returns the text of a recording.
     pub(super) fn read(&self, file: &str) -> Result<String> {
         let bytes = reachtube_files::read(&self.root.join(file), REMEDY)?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
-    /// Writes a file where there is none of this name.
     pub(super) fn write_new(&self, file: &str, text: &str) -> Result<()> {
         let path = self.root.join(file);
         if !path.exists() {
@@ -74,7 +72,6 @@ impl<'a> Folder<'a> {
         Ok(())
     }
 
-    /// Writes the index from the lines of all recordings.
     pub(super) fn finish(&self, lines: &[String]) -> Result<()> {
         self.write_new(INDEX, &(INDEX_HEADER.to_string() + &lines.concat()))
     }
@@ -90,7 +87,6 @@ impl<'a> Folder<'a> {
     }
 }
 
-/// Returns the line of a recording in the index, from its text.
 pub(super) fn index_line(job: &Job, index: usize, text: &str) -> String {
     let (file, kind, repeat) = (&job.files[index], job.kind, job.first + index);
     let [suite, motion, use_for] = match job.as_suite() {

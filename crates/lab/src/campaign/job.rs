@@ -62,7 +62,6 @@ impl Job {
         Self { kind, files, first: index + 1, work }
     }
 
-    /// Returns the suite and what it belongs to, if the job is one.
     pub(super) fn as_suite(&self) -> Option<(&SuiteRuns, &SuiteOf)> {
         match &self.work {
             Work::Suite(of, _, runs) => Some((runs, of)),

@@ -19,7 +19,6 @@ pub(super) struct JointMotion {
 }
 
 impl JointMotion {
-    /// Draws the pose.
     pub(super) fn random(robot: &Robot, joint: usize, random: &mut SplitMix64) -> Self {
         let mut start = Motion::random_pose(robot, random);
         let [low, high] = robot.joints()[joint].position_limits;
@@ -45,7 +44,6 @@ impl JointMotion {
         &self.motions[0].start
     }
 
-    /// Returns the number of cycles.
     pub(super) fn cycles(&self) -> usize {
         self.motions.iter().map(Motion::cycles).sum::<usize>() + 1
     }

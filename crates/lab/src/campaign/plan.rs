@@ -53,7 +53,6 @@ pub(super) fn jobs(robot: &VirtualRobot, options: &CampaignOptions) -> Vec<Job> 
     jobs
 }
 
-/// Draws a motion and returns its suites.
 fn suites(
     robot: &VirtualRobot,
     options: &CampaignOptions,

@@ -67,7 +67,6 @@ impl PoseSeries {
         &self.legs[0].motion.start
     }
 
-    /// Returns the number of cycles.
     pub(super) fn cycles(&self) -> usize {
         self.legs.iter().map(Leg::cycles).sum()
     }

@@ -64,7 +64,6 @@ const IDENTIFY: &str = "    reachtube identify --robot lwa4p --static rest --fri
         --dynamic excitation --validate validation --out identified.toml --report identified
 ";
 
-/// Returns a line for each kind of recordings.
 fn files(options: &CampaignOptions) -> String {
     let CampaignOptions { motions, start_points, runs, longest, rest, one_joint, .. } = options;
     let folder = if options.has_suites_only() { "M1a/" } else { "suites/M1a/" };
@@ -95,7 +94,6 @@ fn files(options: &CampaignOptions) -> String {
     lines
 }
 
-/// Returns a line for each parameter of the virtual robot.
 fn parameters(options: &CampaignOptions) -> String {
     let parameters = serde_json::to_value(&options.robot).expect("parameters are numbers");
     let line = |(name, value): (&String, &Value)| format!("| `{name}` | {value} |\n");

@@ -43,7 +43,6 @@ fn recorded(options: &CampaignOptions) -> tempfile::TempDir {
     folder
 }
 
-/// Returns each file below a folder with its bytes.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in std::fs::read_dir(folder).unwrap() {

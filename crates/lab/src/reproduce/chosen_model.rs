@@ -45,7 +45,6 @@ impl Choice {
     pub(super) const ALL: [Self; 4] =
         [Self::Beforehand, Self::FittedToAll, Self::FittedToHeldOut, Self::BestOfTen];
 
-    /// Returns the choice in words.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Beforehand => "model fixed beforehand",
@@ -96,14 +95,12 @@ fn with_one((read, found): (Problem, Conformance)) -> (Problem, Conformance, usi
     (read, found, 1)
 }
 
-/// Returns the setup of a robot, with some held-out motions.
 fn setup(robot: Robot, held_out: usize) -> Result<Setup> {
     let calibrate = motion_names(0..held_out);
     let settings = Settings { calibrate, ..Settings::new(Torque::Compensated, 6) };
     Ok(Setup::new(robot, settings)?)
 }
 
-/// Returns the robot of a model that was fitted to some motions.
 fn fitted(motions: &MemoryRuns, used: Range<usize>) -> Result<Robot> {
     let read = problem(motions.clone(), used, 0)?;
     let settings = FitSettings { groups: vec![Group::Viscous], pull: Some(PULL) };
@@ -113,7 +110,6 @@ fn fitted(motions: &MemoryRuns, used: Range<usize>) -> Result<Robot> {
     Ok(Robot::from_description(&model.robot)?)
 }
 
-/// Returns a robot with other viscous friction.
 fn candidate(random: &mut SplitMix64) -> Result<Robot> {
     let mut description = Robot::lwa4p().description().clone();
     for joint in &mut description.joints {

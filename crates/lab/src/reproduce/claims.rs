@@ -62,7 +62,6 @@ impl Claim {
         }
     }
 
-    /// Adds why it may not hold.
     fn because(self, why: &str) -> Self {
         Self { why: why.into(), ..self }
     }
@@ -262,7 +261,6 @@ impl Table2Case {
     }
 }
 
-/// Counts the joints whose widths agree.
 fn alike(widths: &Widths) -> usize {
     widths.iter().filter(|(a, b)| *a < SAME_SIZE * b && *b < SAME_SIZE * a).count()
 }

@@ -39,7 +39,6 @@ pub struct CoverageOptions {
 }
 
 impl Default for CoverageOptions {
-    /// Returns 200 campaigns and 2000 further motions.
     fn default() -> Self {
         Self { campaigns: 200, next: 2000, seed: 1 }
     }
@@ -72,7 +71,6 @@ pub struct CoverageRow {
 impl CoverageRow {
     /// Returns whether the statement is about each campaign, at confidence, and not about their
     /// mean.
-    #[must_use]
     pub(crate) fn is_at_confidence(&self) -> bool {
         self.statement.contains("confidence")
     }
@@ -200,7 +198,6 @@ fn campaign(motions: &MemoryRuns, next: &Problem) -> Result<Stated> {
     Ok([scenario, hold_out, (found.trust.violation_probability, truth), (average, truth)])
 }
 
-/// Counts the campaigns whose truth is above the bound.
 fn at_confidence(name: &str, campaigns: Vec<(f64, f64)>) -> CoverageRow {
     let nominal = 1.0 - CONFIDENCE;
     let count = campaigns.len() as f64;

@@ -60,21 +60,17 @@ impl Exemplary {
         Ok(Self { figure, inputs, drifting, trends })
     }
 
-    /// Returns the number of joints.
-    #[must_use]
     pub(crate) fn joints(&self) -> usize {
         self.figure.joints.len()
     }
 
     /// Returns the joint (from 0) whose position spreads furthest over the runs.
-    #[must_use]
     pub(crate) fn widest_joint(&self) -> usize {
         let wider = |a: &usize, b: &usize| self.spread(*a).total_cmp(&self.spread(*b));
         (0..self.joints()).max_by(wider).unwrap_or(0)
     }
 
     /// Returns how far the runs lie apart in a state at most, at one sample, rad or rad/s.
-    #[must_use]
     pub(crate) fn spread(&self, state: usize) -> f64 {
         let samples = self.figure.runs.iter().map(|run| run.times.len()).max().unwrap_or(0);
         let at = |k: usize| {
@@ -89,7 +85,6 @@ impl Exemplary {
 
     /// Returns the largest width of the reachable set in a state, of the velocity conformant case
     /// and of the position conformant one, rad or rad/s.
-    #[must_use]
     pub(crate) fn widths(&self, state: usize) -> [f64; 2] {
         let SuiteFigure { band, inner, .. } = &self.figure;
         [Some(band), inner.as_ref()].map(|band| {

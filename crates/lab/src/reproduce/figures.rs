@@ -278,7 +278,6 @@ pub(super) fn fig5(found: &Identification) -> Result<PaperFigure> {
     })
 }
 
-/// Returns the part of a figure that shows one joint.
 fn of_joint(figure: &SuiteFigure, joint: usize) -> SuiteFigure {
     let n = figure.joints.len();
     let pick = |rows: &[Vec<f64>]| vec![rows[joint].clone(), rows[n + joint].clone()];

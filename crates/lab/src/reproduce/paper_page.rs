@@ -155,7 +155,6 @@ impl PaperPage<'_> {
         }
     }
 
-    /// Returns a figure with its caption and its numbers.
     fn figure(&self, number: u8) -> Markup {
         let Some(figure) = self.computed.figures.iter().find(|figure| figure.number == number)
         else {
@@ -239,7 +238,6 @@ impl PaperPage<'_> {
     }
 }
 
-/// Returns a drawing that scrolls sideways on a narrow screen.
 fn wide_figure(label: &str, svg: &str) -> Markup {
     html! {
         div.wide tabindex="0" role="region" aria-label=(label) style="--width:56rem" {

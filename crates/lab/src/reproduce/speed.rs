@@ -25,7 +25,6 @@ impl Speed {
     }
 
     /// Returns `slow` or `fast`.
-    #[must_use]
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Slow => "slow",

@@ -172,7 +172,6 @@ fn errors(
         .collect()
 }
 
-/// Returns all models to simulate, about q = 0, order by order.
 fn models(robot: &Robot, options: &Table1Options) -> Result<Vec<PolynomialModel>> {
     let zero = ExpansionPoint::zero(robot.joint_count());
     let kinds = [ModelKind::One, ModelKind::Two, ModelKind::Three];

@@ -31,7 +31,6 @@ pub struct Table2Options {
 }
 
 impl Default for Table2Options {
-    /// Returns the paper's notion and disturbance, for all suites.
     fn default() -> Self {
         Self {
             suites: Vec::new(),
@@ -124,7 +123,6 @@ impl Found {
         Ok(Self { problem, cases })
     }
 
-    /// Returns the table.
     pub(super) fn table(&self, options: &Table2Options) -> Table2 {
         Table2 {
             options: options.clone(),
@@ -136,7 +134,6 @@ impl Found {
 }
 
 impl FoundCase {
-    /// Returns which states had to be enclosed.
     pub(super) fn states(&self) -> States {
         self.setup.settings().states
     }
@@ -179,7 +176,6 @@ impl Table2Options {
 
 impl Table2Case {
     /// Returns the bounds of X0 in q and q̇ and of U for a joint, from 0.
-    #[must_use]
     pub(crate) fn bounds(&self, joint: usize) -> [(f64, f64); 3] {
         let bounds = |set: &Hyperrectangle, i: usize| set.bounds(i);
         let UncertaintySets { initial_set, input_set, .. } = &self.sets;
@@ -187,8 +183,6 @@ impl Table2Case {
         [bounds(initial_set, joint), bounds(initial_set, n + joint), bounds(input_set, joint)]
     }
 
-    /// Returns the case's name in the paper.
-    #[must_use]
     pub(crate) fn name(&self) -> &'static str {
         match self.states {
             States::All => "velocity conformant",

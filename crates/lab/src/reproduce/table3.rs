@@ -79,7 +79,6 @@ pub struct Table3 {
 }
 
 impl Table3 {
-    /// Returns the rows of a part.
     pub(crate) fn part(&self, part: Part) -> impl Iterator<Item = &Table3Row> {
         self.rows.iter().filter(move |row| row.part == part)
     }
@@ -119,7 +118,6 @@ pub(super) fn table3_and_fig5(
     Ok((Table3 { poses, rows, warnings: found.warnings }, figure))
 }
 
-/// Returns the settings for the recordings of a campaign.
 fn settings(folder: &Path) -> IdentifySettings {
     let entry = |name: &str| -> Vec<LogEntry> {
         folder.join(name).exists().then(|| PathBuf::from(name).into()).into_iter().collect()
@@ -135,7 +133,6 @@ fn settings(folder: &Path) -> IdentifySettings {
     settings
 }
 
-/// Returns the given effects that change anything.
 fn present<const N: usize>(effects: [(Effect, f64); N]) -> Vec<Effect> {
     let some = effects.into_iter().filter(|(_, size)| *size != 0.0);
     some.map(|(effect, _)| effect).collect()
@@ -196,7 +193,6 @@ fn gravity(found: &Identification, [paper, truth]: [&Robot; 2]) -> Vec<Table3Row
         .collect()
 }
 
-/// Returns the inertial parameters, from the exciting motions.
 fn inertia(
     found: &Identification,
     [paper, truth]: [&Robot; 2],

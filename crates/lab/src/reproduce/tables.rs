@@ -75,7 +75,6 @@ impl Table1 {
     }
 }
 
-/// Returns the simulated error and the paper's error.
 fn cell_pair(cell: Option<&Cell>) -> [String; 2] {
     let Some(cell) = cell else { return ["-".into(), String::new()] };
     let spread =
@@ -250,7 +249,6 @@ impl Coverage {
 
     /// Returns a chart for each statement at confidence: one dot per campaign, its true probability
     /// over the stated one. The statement is wrong above the line.
-    #[must_use]
     pub(crate) fn charts(&self) -> Vec<Chart> {
         let at_confidence = self.rows.iter().filter(|row| row.is_at_confidence());
         let chart = |row: &CoverageRow| {

@@ -49,7 +49,6 @@ impl Trajectories {
         }
     }
 
-    /// Returns the indices of the motions of a block.
     fn block(&self, number: usize) -> std::ops::Range<usize> {
         number * BLOCK..((number + 1) * BLOCK).min(self.starts.len())
     }

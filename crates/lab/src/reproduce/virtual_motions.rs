@@ -47,7 +47,6 @@ pub(super) fn virtual_motions(
     Ok(motions)
 }
 
-/// Returns the names of some motions.
 pub(super) fn motion_names(range: Range<usize>) -> Vec<String> {
     range.map(|m| format!("M{m}")).collect()
 }
@@ -64,7 +63,6 @@ pub(super) fn problem(
     Ok(Problem::read(setup, Box::new(motions), &motion_names(used), Keep::Needed, &Silent)?)
 }
 
-/// Returns the part of the next motions that leave the sets.
 pub(super) fn truth(next: &Problem, tube: &Tube) -> Result<f64> {
     let tube = Tube::new(next, tube.sets.clone())?;
     let verdict = Verdict::new(next, &tube)?;
@@ -72,7 +70,6 @@ pub(super) fn truth(next: &Problem, tube: &Tube) -> Result<f64> {
     Ok(leaving as f64 / verdict.suites.len() as f64)
 }
 
-/// Draws a motion and its runs.
 fn drawn(robot: &VirtualRobot, index: usize, random: &mut SplitMix64) -> (Motion, SuiteRuns) {
     let motion = Motion::uniform(robot.nominal(), random);
     let start = uniform(random, 0.0, START_POINTS as f64) as usize;
@@ -86,7 +83,6 @@ fn drawn(robot: &VirtualRobot, index: usize, random: &mut SplitMix64) -> (Motion
     (motion, runs)
 }
 
-/// Returns a recording as it is read from its file.
 fn in_memory(recording: &Recording) -> Run {
     let n = recording.joints;
     let rows = recording.q.chunks_exact(n).zip(recording.qd.chunks_exact(n));

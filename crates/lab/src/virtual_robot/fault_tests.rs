@@ -60,7 +60,6 @@ impl Tip {
         (own - heavier).as_slice().to_vec()
     }
 
-    /// Returns the direction of a push that begins.
     fn push(&self, direction: Direction, plant: &Plant, random: &mut SplitMix64) -> [f64; 3] {
         let axis = |i: usize| std::array::from_fn(|k| f64::from(u8::from(i == k)));
         let speed = |i: usize| {

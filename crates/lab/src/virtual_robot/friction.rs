@@ -16,7 +16,6 @@ pub(super) struct JointFriction {
 }
 
 impl JointFriction {
-    /// Returns the friction at the law's reference temperature.
     pub(super) fn new(joint: &Joint) -> Self {
         let limit = joint.velocity_limit.unwrap_or(f64::INFINITY);
         Self { law: joint.friction, limit, factors: [1.0; 2] }

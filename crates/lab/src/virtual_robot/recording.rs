@@ -35,7 +35,6 @@ impl Recording {
         Self { joints, q: room(), qd: room(), torques: room(), temperatures: room() }
     }
 
-    /// Appends a sample.
     pub(crate) fn push(&mut self, q: &[f64], qd: &[f64], torque: &[f64], temperatures: &[f64]) {
         let columns = [
             (&mut self.q, q, POSITION_DECIMALS),
@@ -48,7 +47,6 @@ impl Recording {
         self.torques.extend_from_slice(torque);
     }
 
-    /// Returns the number of samples K.
     pub(crate) fn len(&self) -> usize {
         self.q.len() / self.joints
     }
@@ -58,11 +56,6 @@ impl Recording {
         [&self.q, &self.qd, &self.torques, &self.temperatures]
             .iter()
             .all(|values| values.iter().all(|x| x.is_finite()))
-    }
-
-    /// Returns the mean temperature of the joints at the first sample \[°C\].
-    pub(crate) fn first_temperature(&self) -> f64 {
-        self.temperatures[..self.joints].iter().sum::<f64>() / self.joints as f64
     }
 
     /// Returns the recording as CSV with every `stride`-th sample; `sample_time` \[s\] is that

@@ -40,7 +40,6 @@ pub(crate) struct Scatter {
 }
 
 impl Scatter {
-    /// Draws a deviation within the robot's parameters.
     pub(crate) fn random(robot: &VirtualRobot, random: &mut SplitMix64) -> Self {
         let parameters = robot.parameters();
         let mut draw = |width: f64| {

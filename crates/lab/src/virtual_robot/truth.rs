@@ -40,21 +40,16 @@ impl VirtualRobot {
         Ok(Self { parameters, nominal: nominal.clone(), truth, capacities })
     }
 
-    /// Returns the parameters.
-    #[must_use]
     pub(crate) fn parameters(&self) -> &VirtualRobotParameters {
         &self.parameters
     }
 
-    /// Returns the nominal model.
-    #[must_use]
     pub(crate) fn nominal(&self) -> &Robot {
         &self.nominal
     }
 
     /// Returns the true robot, with its friction as a law of temperature. Torque ripple is not part
     /// of it.
-    #[must_use]
     pub(crate) fn truth(&self) -> &Robot {
         &self.truth
     }

@@ -187,7 +187,6 @@ pub fn bounds(set: &Hyperrectangle) -> Vec<Interval> {
     sides.map(|(&c, &r)| Interval::centred(c, r)).collect()
 }
 
-/// Returns the box with these sides, rounded outward.
 fn hyperrectangle(sides: impl Iterator<Item = Interval>) -> Hyperrectangle {
     let (centre, radius) = sides.map(|side| (side.mid(), side.rad())).unzip();
     Hyperrectangle { centre, radius }

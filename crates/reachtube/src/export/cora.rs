@@ -111,7 +111,6 @@ fn data(case: &ExportCase, form: InputForm, header: &str) -> String {
     text + "end\n"
 }
 
-/// Returns the script that runs CORA.
 fn script(case: &ExportCase, form: InputForm, header: &str) -> String {
     let affine = case.system.linear.is_some();
     let (states, inputs) = (case.system.dimension(), case.joints());

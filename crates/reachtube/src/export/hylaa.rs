@@ -67,7 +67,6 @@ if __name__ == "__main__":
     main()
 "#;
 
-/// Returns the script.
 pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
     let Some(system) = &case.system.linear else { return Vec::new() };
     let lines = comment("", &Meaning::new(case, Tool::HyLaa, form).paragraphs);

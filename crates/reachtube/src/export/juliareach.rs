@@ -9,7 +9,6 @@ use super::meaning::Meaning;
 use super::text::{comment, number, numbers, rows};
 use super::{ExportFile, InputForm, Tool};
 
-/// Returns the script.
 pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
     let Some(system) = &case.system.linear else { return Vec::new() };
     let mut text = comment("#", &Meaning::new(case, Tool::JuliaReach, form).paragraphs);

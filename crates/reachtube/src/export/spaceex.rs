@@ -7,7 +7,6 @@ use super::meaning::Meaning;
 use super::text::{comment, number, terms};
 use super::{ExportFile, InputForm, Tool};
 
-/// Returns the model and the configuration.
 pub(super) fn files(case: &ExportCase, tool: Tool, form: InputForm) -> Vec<ExportFile> {
     let lines = Meaning::new(case, tool, form).paragraphs;
     let name = if tool == Tool::XSpeed { "xspeed" } else { "spaceex" };

@@ -74,7 +74,6 @@ pub(super) fn parse(text: &str, origin: &str, robot: &Robot) -> Result<Vec<Capsu
     file.capsule.into_iter().enumerate().map(capsule).collect()
 }
 
-/// Returns the index of the joint that moves a link.
 fn joint_of(link: &LinkName, robot: &Robot) -> Option<usize> {
     match link {
         LinkName::Number(number) => {

@@ -303,7 +303,6 @@ impl Scenario {
 }
 
 impl ObstacleTable {
-    /// Returns the solid, or the problem and its remedy.
     fn solid(&self, folder: &Path) -> core::result::Result<Solid, Problem> {
         let Self { half_space, cuboid, capsule, sphere, mesh, .. } = self;
         let solid = match (half_space, cuboid, capsule, sphere, mesh) {
@@ -340,7 +339,6 @@ impl ObstacleTable {
     }
 }
 
-/// Returns the directions of the axes of a frame.
 fn axes([roll, pitch, yaw]: [f64; 3]) -> [[f64; 3]; 3] {
     let rotation = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();
     [0, 1, 2].map(|i| rotation.column(i).into_owned().into())

@@ -111,12 +111,10 @@ impl<'a> Motion<'a> {
         Self { times: &reach.times[..states.len() / width], states, width }
     }
 
-    /// Returns the sample times, s.
     pub(crate) fn times(&self) -> &[f64] {
         self.times
     }
 
-    /// Returns the middles of the states, which a controller follows.
     pub(crate) fn middle(&self) -> Vec<f64> {
         self.states.iter().map(|side| side.mid()).collect()
     }
@@ -142,7 +140,6 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Returns the worst stop of each joint.
 fn worst(robot: &Robot, suite: &str, stops: &[FromSample]) -> Vec<WorstStop> {
     let followed = || stops.iter().filter_map(|(time, stop)| Some((*time, stop.as_ref()?)));
     let samples = followed().count();

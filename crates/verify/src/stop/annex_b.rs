@@ -58,8 +58,6 @@ pub struct AnnexRow {
 }
 
 impl AnnexB {
-    /// Returns the greatest part of the load in the table.
-    #[must_use]
     pub(crate) fn full_load(&self) -> f64 {
         self.rows.iter().map(|row| row.load).fold(0.0, f64::max)
     }
@@ -143,12 +141,10 @@ pub(crate) fn annex_b(
     Ok(AnnexB { rows, notes })
 }
 
-/// Returns what is missing in the table.
 fn missing(text: impl Into<String>) -> Finding {
     Finding::new(Severity::Info, Code::TableIncomplete, text)
 }
 
-/// Returns all cases of a joint.
 fn cases(joint: usize, loads: &[f64]) -> Vec<Case> {
     let mut found = Vec::new();
     for extension in PARTS {
@@ -160,7 +156,6 @@ fn cases(joint: usize, loads: &[f64]) -> Vec<Case> {
     found
 }
 
-/// Returns the robot with each part of its load.
 fn loaded(robot: &Robot, payload: Option<Payload>, parts: &[f64]) -> Result<Vec<(f64, Robot)>> {
     let with = |part: &f64| {
         let robot = match payload {
@@ -214,7 +209,6 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Returns the robot with a part of its load.
     fn robot(&self, load: f64) -> &Robot {
         let known = self.loaded.iter().find(|(part, _)| *part == load);
         known.map_or(self.robot, |(_, robot)| robot)

@@ -25,7 +25,6 @@ pub enum Category {
 impl Category {
     /// Returns category 1 with the deceleration of the brakes' file and the error of the drives'
     /// torque; `None` if the file has no deceleration.
-    #[must_use]
     pub(crate) fn one(brakes: &Brakes, input_set: &Hyperrectangle) -> Option<Self> {
         let limits = brakes.deceleration.clone()?;
         Some(Self::One { limits, input_set: input_set.clone() })
@@ -50,8 +49,6 @@ impl Category {
         }
     }
 
-    /// Returns the number of the category, 0 or 1.
-    #[must_use]
     pub(crate) fn number(&self) -> u8 {
         match self {
             Self::Zero => 0,

@@ -86,7 +86,6 @@ impl Deceleration {
         CYCLE * cycles as f64
     }
 
-    /// Returns the torque of a joint in a cycle.
     pub(super) fn torque(&self, cycle: usize, joint: usize) -> f64 {
         self.torques[cycle * self.joints + joint]
     }

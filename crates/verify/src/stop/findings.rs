@@ -22,7 +22,6 @@ pub(super) fn findings(
     [verdict].into_iter().chain(left_out(stops)).chain(table).collect()
 }
 
-/// Returns the verdict about the stops from recorded motions.
 fn of_motions(stops: &[WorstStop], span: &DelaySpan) -> Finding {
     let [samples, proved] = proved(stops);
     let open = samples - proved;
@@ -48,7 +47,6 @@ fn of_motions(stops: &[WorstStop], span: &DelaySpan) -> Finding {
     numbers(Finding::new(Severity::Failure, Code::StandstillOpen, text))
 }
 
-/// Returns how many samples were left out.
 fn left_out(stops: &[WorstStop]) -> Option<Finding> {
     let count: usize = of_suites(stops).map(|worst| worst.skipped).sum();
     let noun = if count == 1 { "sample is" } else { "samples are" };
@@ -60,7 +58,6 @@ fn left_out(stops: &[WorstStop]) -> Option<Finding> {
     (count > 0).then(|| finding.with("samples", count as f64))
 }
 
-/// Returns that a recorded stop is not within the proved one.
 fn beyond(stop: &RecordedStop, unit: &str) -> Finding {
     let RecordedStop { recording, joint, .. } = stop;
     let not_covered = |text: String| Finding::new(Severity::Failure, Code::StopNotCovered, text);

@@ -30,7 +30,6 @@ impl Path {
     /// # Panics
     ///
     /// Panics if there are fewer than two samples, or not one state for each time.
-    #[must_use]
     pub(crate) fn through(times: &[f64], states: &[f64]) -> Self {
         assert!(times.len() > 1, "a path has two ends");
         let width = states.len() / times.len();
@@ -63,8 +62,6 @@ impl Path {
         Self { times: vec![0.0, duration], states: [q, qd, &end, qd].concat() }
     }
 
-    /// Returns the time of the end, s.
-    #[must_use]
     pub(crate) fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
     }

@@ -316,7 +316,6 @@ impl<'a> Run<'a> {
         None
     }
 
-    /// Returns a joint that stands and may not be held.
     fn slipping(&self, moving: &[usize], accelerations: &[Interval]) -> Option<usize> {
         let standing = (0..self.q.len()).filter(|joint| self.stands[*joint]);
         standing.into_iter().find(|joint| {

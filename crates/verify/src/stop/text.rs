@@ -101,7 +101,6 @@ pub fn recorded_table(stops: &[RecordedStop], unit: &str) -> Table {
     Table { title, ..Table::new(header, stops.iter().map(row).collect()) }
 }
 
-/// Returns whether a finding is about the table of ISO 10218-1.
 fn is_about_table(finding: &Finding) -> bool {
     matches!(finding.code, Code::TableIncomplete | Code::BrakeWeak)
 }

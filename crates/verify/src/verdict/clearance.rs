@@ -132,7 +132,6 @@ impl<'a> Search<'a> {
         distances
     }
 
-    /// Returns the smallest distance of each link from each obstacle.
     pub(super) fn by_link(&self, reach: &SuiteReach, smallest: &[(f64, usize)]) -> Vec<Clearance> {
         let mut all: Vec<Clearance> = Vec::new();
         for (&(capsule, index), &(distance, step)) in self.pairs.iter().zip(smallest) {

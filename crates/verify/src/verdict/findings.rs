@@ -67,7 +67,6 @@ fn until_words(all: &[Verification]) -> String {
     }
 }
 
-/// Returns the verdict about the worst motion.
 fn verdict(worst: &Verification, [until, links]: [&str; 2], scene: &Scene) -> Finding {
     let keep = match scene.clearance {
         0.0 => String::new(),
@@ -112,7 +111,6 @@ fn verdict(worst: &Verification, [until, links]: [&str; 2], scene: &Scene) -> Fi
     finding.at(case).with("proved_distance", proved(worst)).with("simulated_distance", simulated)
 }
 
-/// Returns how close the witness comes, as a sentence.
 fn too_close(worst: &Verification) -> Option<String> {
     let found = worst.closest.as_ref()?;
     let how = match found.distance {
@@ -129,7 +127,6 @@ fn too_close(worst: &Verification) -> Option<String> {
     Some(format!("unsafe: {when}, the link of {link} {how} at {time:.3} s ({case})."))
 }
 
-/// Returns what would decide an open question.
 fn next(v: &Verification) -> Option<Finding> {
     let case = &v.case;
     let info = |code: Code, text: String| Finding::new(Severity::Info, code, text).at(case);

@@ -84,7 +84,6 @@ impl StopSearch<'_> {
         best
     }
 
-    /// Returns the sample at which the stop of a motion begins.
     fn begins(&self, motion: &Motion, sample: usize) -> Option<usize> {
         let Approach { case, body, scene, .. } = self.approach;
         let (n, times) = (case.joints(), case.grid.times());
@@ -180,7 +179,6 @@ impl StopSearch<'_> {
         Some(extremes.into_iter().map(of).collect())
     }
 
-    /// Returns the motion and its stop as one.
     fn witness(
         &self,
         pair: &Clearance,
@@ -212,7 +210,6 @@ impl StopSearch<'_> {
     }
 }
 
-/// Returns the witness that comes closer.
 fn closer(best: Option<Witness>, found: Option<Witness>) -> Option<Witness> {
     match (best, found) {
         (Some(best), Some(found)) if found.distance < best.distance => Some(found),

@@ -112,7 +112,6 @@ impl Approach<'_> {
         best
     }
 
-    /// Returns the start and the inputs of the nominal motion.
     pub(super) fn nominal(&self) -> (Vec<f64>, Vec<f64>) {
         let Self { case, sets, .. } = self;
         let shifted = |base: &[f64], centre: &[f64]| -> Vec<f64> {
@@ -143,7 +142,6 @@ impl Approach<'_> {
         (start, slopes.map(|(at, (u, slope))| vertex(*u, radii[at % n], slope)).collect())
     }
 
-    /// Returns the sample of a motion at which the link is closest.
     fn nearest(
         &self,
         pair: &Clearance,
@@ -170,7 +168,6 @@ impl Approach<'_> {
         })
     }
 
-    /// Returns the slope of the distance by the positions, n.
     pub(super) fn slope(&self, pair: &Clearance, q: &[f64], time: f64) -> Vec<f64> {
         let mut moved = q.to_vec();
         let mut by = |i: usize| {

@@ -9,7 +9,6 @@ use super::meaning::Meaning;
 use super::text::comment;
 use super::{ExportFile, InputForm, Tool};
 
-/// Returns the model file or the program.
 pub(super) fn files(case: &ExportCase, form: InputForm) -> Vec<ExportFile> {
     let paragraphs = Meaning::new(case, Tool::FlowStar, form).paragraphs;
     match &case.system.linear {

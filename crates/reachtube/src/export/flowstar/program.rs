@@ -129,7 +129,6 @@ int main() {
 }
 "#;
 
-/// Returns the program.
 pub(super) fn stepping(case: &ExportCase, form: InputForm) -> String {
     let names: Vec<String> = case.system.states.iter().map(|name| format!("\"{name}\"")).collect();
     let sides = |name: &str, sides: Vec<Interval>| {

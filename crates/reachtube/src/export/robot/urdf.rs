@@ -102,7 +102,6 @@ fn largest_difference(robot: &Robot, other: &Robot) -> f64 {
     worst / largest
 }
 
-/// Returns the first line of a companion.
 fn mark(robot: &Robot) -> String {
     format!("# {MARK} ({TOOL}): what robot.urdf cannot say of {}.\n", harmless(robot.name()))
 }

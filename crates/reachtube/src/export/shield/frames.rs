@@ -91,7 +91,6 @@ impl Frames {
         Ok(bodies(robot)?.iter().zip(&self.turns).map(framed).collect())
     }
 
-    /// Returns the file, without its first comment.
     pub(super) fn text(&self, robot: &Robot, secure_radius: f64) -> Result<String, ExportError> {
         let mut text = format!(
             "robot_name: \"{}\"\n\nnb_joints: {}\n\n# m\nsecure_radius: {}\n\n",
@@ -136,7 +135,6 @@ impl Frames {
     }
 }
 
-/// Writes a key with numbers, one entry per joint.
 fn list(text: &mut String, key: &str, entries: impl Iterator<Item = String>) {
     let entries: Vec<String> = entries.collect();
     let _ = writeln!(text, "{key}: [\n  {}]\n", entries.join(",\n\n  "));
@@ -177,7 +175,6 @@ fn enclosing(capsules: &[Capsule]) -> Option<Capsule> {
     Some(Capsule { joint: first.joint, from: axis[0].into(), to: axis[1].into(), radius })
 }
 
-/// Returns the distance of a point from a segment.
 fn distance(p: &Vector3<f64>, [a, b]: &[Vector3<f64>; 2]) -> f64 {
     let along = b - a;
     let s = ((p - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);

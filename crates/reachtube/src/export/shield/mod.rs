@@ -153,7 +153,6 @@ fn is_of_links(file: &ShieldFile) -> bool {
     file.text.lines().any(|line| line.starts_with("enclosures:"))
 }
 
-/// Returns the largest margin of each link.
 fn largest_margins(body: &Body, reached: &[SuiteReach]) -> Result<Vec<LinkMargin>, ExportError> {
     let mut largest: Vec<(usize, LinkMargin)> = Vec::new();
     for reach in reached {
@@ -181,7 +180,6 @@ fn rounded_up(margin: f64) -> f64 {
     (margin * (1.0 + RELATIVE) / RESOLUTION).ceil().mul_add(RESOLUTION, RESOLUTION)
 }
 
-/// Returns the comment that says what is proved.
 fn about(robot: &Robot, radius: f64, margins: &[LinkMargin], reached: &[SuiteReach]) -> String {
     let ends = reached.iter().filter_map(|reach| reach.times.last()).copied();
     let names: Vec<String> = reached.iter().map(|reach| harmless(&reach.name())).collect();

@@ -36,7 +36,6 @@ impl<'a> Yaml<'a> {
         Ok(values)
     }
 
-    /// Returns the text with other numbers for a key.
     pub(super) fn with_numbers(&self, key: &str, values: &str) -> Result<String, ExportError> {
         let place = self.brackets(key)?;
         let text = &self.file.text;
@@ -64,7 +63,6 @@ impl<'a> Yaml<'a> {
         }
     }
 
-    /// Returns the place between the brackets of a key.
     fn brackets(&self, key: &str) -> Result<Range<usize>, ExportError> {
         let (text, start) = (&self.file.text, self.after(key)?);
         let open = text[start..].find(|c: char| !c.is_whitespace()).map(|at| start + at);
@@ -76,7 +74,6 @@ impl<'a> Yaml<'a> {
         }
     }
 
-    /// Returns the place after a key and its colon.
     fn after(&self, key: &str) -> Result<usize, ExportError> {
         let mut at = 0;
         for line in self.file.text.split_inclusive('\n') {
