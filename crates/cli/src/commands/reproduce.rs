@@ -128,7 +128,7 @@ pub(crate) struct Table2Arguments {
         long,
         value_name = "NOTION,..",
         value_delimiter = ',',
-        value_parser = choice::<Notion>(&Notion::NAMES[..3])
+        value_parser = choice::<Notion>(Notion::NAMES)
     )]
     pub notions: Vec<Notion>,
     /// How the disturbance may change in time [default: constant for the hull, as in the paper;

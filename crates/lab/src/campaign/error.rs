@@ -6,28 +6,16 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CampaignError {
-    /// A number of things to record is not supported.
+    /// A number of things to record, or a duration, is not supported.
     #[error("campaign: {name}: {given} is not in {least} to {most}; give a number in this range")]
-    Count {
-        /// What is counted.
+    Range {
+        /// What is counted, or what lasts so long.
         name: &'static str,
         /// The number given.
-        given: usize,
-        /// The least number.
-        least: usize,
-        /// The largest number.
-        most: usize,
-    },
-    /// A duration is not supported.
-    #[error("campaign: {name} of {given} s; give {least} to {most} s")]
-    Duration {
-        /// What lasts so long.
-        name: &'static str,
-        /// The duration given \[s\].
         given: f64,
-        /// The shortest duration \[s\].
+        /// The least number.
         least: f64,
-        /// The longest duration \[s\].
+        /// The largest number.
         most: f64,
     },
     /// All motions are held out.
@@ -53,9 +41,8 @@ pub enum CampaignError {
     /// The folder holds another campaign.
     #[error(
         "{}: the folder holds a campaign with other options, another robot or another version of \
-         the program: {} names them; give the same, or an empty folder",
-        folder.display(),
-        super::options::MARK
+         the program: campaign.json names them; give the same, or an empty folder",
+        folder.display()
     )]
     OtherCampaign {
         /// The folder.
@@ -63,10 +50,9 @@ pub enum CampaignError {
     },
     /// The folder has no options of a campaign.
     #[error(
-        "{}: the folder has no {} of `reachtube campaign`, from which the planned motion and the \
-         arm follow; give the folder of a campaign",
-        folder.display(),
-        super::options::MARK
+        "{}: the folder has no campaign.json of `reachtube campaign`, from which the planned \
+         motion and the arm follow; give the folder of a campaign",
+        folder.display()
     )]
     NotACampaign {
         /// The folder.

@@ -1,17 +1,12 @@
 //! The independent parts of a campaign.
 
 use super::excitation::ExcitingMotion;
-use super::joint_motion::JointMotion;
-use super::pose_series::PoseSeries;
+use super::motion_series::MotionSeries;
 use crate::error::Result;
 use crate::motion::{Motion, Planned, SAMPLE_TIME};
 use crate::virtual_robot::{
     Arm, Logged, PreRecorded, SuiteRuns, VirtualRobot, VirtualRobotError, record_suite,
 };
-
-/// Samples of a recording of poses between two that are logged: 50 Hz suffice for an arm that
-/// mostly rests.
-const POSE_STRIDE: usize = 5;
 
 /// One part of a campaign, which nothing else depends on.
 pub(super) struct Job {
@@ -28,10 +23,8 @@ pub(super) struct Job {
 pub(super) enum Work {
     /// Runs of a test suite.
     Suite(SuiteOf, Motion, SuiteRuns),
-    /// Static poses.
-    Poses(PoseSeries),
-    /// Slow motions of one joint.
-    OneJoint(JointMotion),
+    /// Motions and rests, with the stride of the samples that are logged.
+    Series(MotionSeries, usize),
     /// An exciting motion.
     Excitation(ExcitingMotion),
 }
@@ -77,12 +70,8 @@ impl Job {
                 let runs = record_suite(robot, motion, &recorded, runs)?;
                 Ok(runs.iter().map(|run| run.to_csv(SAMPLE_TIME, 1)).collect())
             }
-            Work::Poses(series) => {
-                let plan = |k| series.at(k);
-                self.follow(robot, series.start(), series.cycles(), POSE_STRIDE, plan)
-            }
-            Work::OneJoint(motion) => {
-                self.follow(robot, motion.start(), motion.cycles(), 1, |k| motion.at(k))
+            Work::Series(series, stride) => {
+                self.follow(robot, series.start(), series.cycles(), *stride, |k| series.at(k))
             }
             Work::Excitation(motion) => {
                 let plan = |k| motion.at(k as f64 * SAMPLE_TIME);

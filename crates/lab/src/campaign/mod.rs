@@ -18,10 +18,9 @@ pub(crate) mod error;
 mod excitation;
 mod folder;
 mod job;
-mod joint_motion;
+mod motion_series;
 mod options;
 mod plan;
-mod pose_series;
 mod readme;
 mod record;
 #[cfg(test)]

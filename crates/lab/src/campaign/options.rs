@@ -11,10 +11,10 @@ use crate::virtual_robot::VirtualRobotParameters;
 pub(super) const MARK: &str = "campaign.json";
 
 /// Largest number of suites per motion, which are named by letters.
-const MOST_START_POINTS: usize = 26;
+const MOST_START_POINTS: f64 = 26.0;
 
 /// Largest number of anything else that is counted.
-const MOST: usize = 100_000;
+const MOST: f64 = 100_000.0;
 
 /// The sizes of a campaign, and the seed of everything random.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -91,25 +91,20 @@ impl CampaignOptions {
     }
 
     pub(super) fn validate(&self) -> Result<(), CampaignError> {
-        for (name, given, least, most) in [
-            ("motions", self.motions, 1, MOST),
-            ("start points", self.start_points, 1, MOST_START_POINTS),
-            ("runs", self.runs, 1, MOST),
-            ("poses at rest", self.rest, 0, MOST),
-            ("motions of one joint", self.one_joint, 0, MOST),
-            ("exciting motions", self.excitation, 0, MOST),
-            ("validating motions", self.validation, 0, MOST),
-        ] {
-            if !(least..=most).contains(&given) {
-                return Err(CampaignError::Count { name, given, least, most });
-            }
-        }
+        let count = |name, given: usize, least: f64| (name, given as f64, [least, MOST]);
         for (name, given, [least, most]) in [
-            ("runs", self.longest, [0.1, 3600.0]),
-            ("motions", self.duration.unwrap_or(1.0), [0.5, 60.0]),
+            count("motions", self.motions, 1.0),
+            ("start points", self.start_points as f64, [1.0, MOST_START_POINTS]),
+            count("runs", self.runs, 1.0),
+            count("poses at rest", self.rest, 0.0),
+            count("motions of one joint", self.one_joint, 0.0),
+            count("exciting motions", self.excitation, 0.0),
+            count("validating motions", self.validation, 0.0),
+            ("longest run in s", self.longest, [0.1, 3600.0]),
+            ("duration of a motion in s", self.duration.unwrap_or(1.0), [0.5, 60.0]),
         ] {
             if !(least..=most).contains(&given) {
-                return Err(CampaignError::Duration { name, given, least, most });
+                return Err(CampaignError::Range { name, given, least, most });
             }
         }
         let (motions, held_out) =

@@ -7,13 +7,16 @@ use reachtube_robot::Robot;
 
 use super::excitation::ExcitingMotion;
 use super::job::{Job, SuiteOf, Work};
-use super::joint_motion::JointMotion;
+use super::motion_series::MotionSeries;
 use super::options::{CampaignOptions, campaign_options};
-use super::pose_series::PoseSeries;
 use crate::error::Result;
 use crate::motion::{Motion, SAMPLE_TIME};
 use crate::random::{SeedableRng, SplitMix64};
 use crate::virtual_robot::{Scatter, SuiteRuns, VirtualRobot};
+
+/// Samples of a recording of poses between two that are logged: 50 Hz suffice for an arm that
+/// mostly rests.
+const POSE_STRIDE: usize = 5;
 
 /// Rests in one recording: two at each position.
 const POSES_PER_FILE: usize = 20;
@@ -30,15 +33,19 @@ pub(super) fn jobs(robot: &VirtualRobot, options: &CampaignOptions) -> Vec<Job> 
     let (nominal, mut random) = (robot.nominal(), stream(1));
     for first in (0..options.rest).step_by(POSES_PER_FILE) {
         let count = POSES_PER_FILE.min(options.rest - first);
-        let series = PoseSeries::random(nominal, count, &mut random);
-        jobs.push(Job::identification("rest", first / POSES_PER_FILE, Work::Poses(series)));
+        let series = MotionSeries::of_poses(nominal, count, &mut random);
+        jobs.push(Job::identification(
+            "rest",
+            first / POSES_PER_FILE,
+            Work::Series(series, POSE_STRIDE),
+        ));
     }
     let mut random = stream(2);
     for joint in 0..nominal.joint_count() {
         for pose in 0..options.one_joint {
-            let motion = JointMotion::random(nominal, joint, &mut random);
+            let motion = MotionSeries::of_joint(nominal, joint, &mut random);
             let index = joint * options.one_joint + pose;
-            jobs.push(Job::identification("one-joint", index, Work::OneJoint(motion)));
+            jobs.push(Job::identification("one-joint", index, Work::Series(motion, 1)));
         }
     }
     for (kind, name, count) in

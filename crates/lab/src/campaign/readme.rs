@@ -25,7 +25,7 @@ such file. `{MARK}` holds the options.
 
     reachtube inspect --data .
 {identify}\
-\x20   reachtube conform --robot lwa4p --data . --torque compensated --out model.json --report report
+\x20   reachtube conform --robot lwa4p --data . --torque compensated --out model.json
 
 `--robot lwa4p` is the nominal model that the arm's controller has. Without `--suites`, `conform`
 takes all suites.

@@ -7,8 +7,7 @@ use serde::Serialize;
 
 use super::coverage::{Coverage, CoverageRow};
 use super::exemplary::Exemplary;
-use super::paper::Paper;
-use super::speed::Speed;
+use super::paper::{Paper, Speed};
 use super::table1::{Cell, Table1};
 use super::table2::{Table2, Table2Case};
 use super::table3::{Table3, Table3Row};

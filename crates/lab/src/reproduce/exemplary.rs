@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use reachtube_conform::next_motion::Trend;
 use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::States;
 use reachtube_conform::{
@@ -25,8 +24,6 @@ pub(crate) struct Exemplary {
     pub inputs: Vec<f64>,
     /// Number of suites of which one joint at least follows the order of the runs, and of all.
     pub drifting: [usize; 2],
-    /// The joints of this suite that follow the order of the runs.
-    pub trends: Vec<Trend>,
 }
 
 impl Exemplary {
@@ -55,9 +52,8 @@ impl Exemplary {
         let all = &found.cases[0].found.trends;
         let mut suites: Vec<&str> = all.iter().map(|trend| trend.suite.as_str()).collect();
         suites.dedup();
-        let trends = all.iter().filter(|trend| trend.suite == name).cloned().collect();
         let drifting = [suites.len(), found.problem.recordings().suites.len()];
-        Ok(Self { figure, inputs, drifting, trends })
+        Ok(Self { figure, inputs, drifting })
     }
 
     pub(crate) fn joints(&self) -> usize {

@@ -13,8 +13,7 @@ use crate::campaign::{PlannedSuite, planned_suites};
 use crate::error::Result;
 use crate::motion::{Motion, SAMPLE_TIME};
 use reachtube_page::{
-    Chart, Nominal, RunTrace, Series, SuiteFigure, TextTable, View, charts_svg, load_chart,
-    suite_svg, viscous_chart,
+    Chart, Series, SuiteFigure, TextTable, View, charts_svg, load_chart, suite_svg, viscous_chart,
 };
 use reachtube_scalar::number::significant;
 
@@ -42,60 +41,41 @@ pub struct PaperFigure {
 }
 
 /// Draws Fig. 1: recorded behaviour inside the reachable set, for the joint that spreads most.
-///
-/// # Errors
-///
-/// As [`suite_svg`].
 pub(super) fn fig1(suite: &Exemplary) -> Result<PaperFigure> {
-    let joint = suite.widest_joint();
-    let figure = SuiteFigure { inner: None, ..of_joint(&suite.figure, joint) };
-    let (runs, name) = (figure.runs.len(), &figure.suite);
+    let (joint, n) = (suite.widest_joint(), suite.joints());
+    let SuiteFigure { runs, suite: name, joints, .. } = &suite.figure;
+    let caption = format!(
+        "{} of suite {name}: {} recordings of the same open-loop input (red) lie in the reachable \
+         set of the model (grey) at every sample.",
+        joints[joint],
+        runs.len()
+    );
+    let charts = [
+        in_set(suite, joint, "position", "position [rad]"),
+        in_set(suite, n + joint, "velocity", "velocity [rad/s]"),
+    ];
     Ok(PaperFigure {
         number: 1,
-        caption: format!(
-            "{} of suite {name}: {runs} recordings of the same open-loop input (lines) lie in the \
-             reachable set of the model (grey) at every sample.",
-            figure.joints[0]
-        ),
         paper: "The paper shows its arm, and recordings (red) inside the reachable set (grey)."
             .into(),
         table: widths(suite, joint..joint + 1),
-        svg: suite_svg(&figure, View::Motion)?,
+        svg: charts_svg(&charts, 2, &caption)?,
+        caption,
     })
 }
 
 /// Draws Fig. 2: the same input moves the robot, whose runs differ, and the model, whose reachable
 /// set encloses them.
-///
-/// # Errors
-///
-/// As [`suite_svg`].
 pub(super) fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
     let (joint, n) = (suite.widest_joint(), suite.joints());
-    let SuiteFigure { times, band, runs, joints, .. } = &suite.figure;
-    let line = |times: &[f64], values: &[f64], colour| Series {
-        points: times.iter().copied().zip(values.iter().copied()).collect(),
-        dots: false,
-        colour,
-    };
+    let SuiteFigure { times, runs, joints, .. } = &suite.figure;
     let inputs: Vec<f64> = suite.inputs.iter().skip(joint).step_by(n).copied().collect();
-    let recorded = || runs.iter().map(|run| line(&run.times, &run.states[joint], RECORDED));
-    // The set's upper edge forward in time, then its lower edge back.
-    let edge = |edge: &[f64]| times.iter().copied().zip(edge.to_vec()).collect::<Vec<_>>();
-    let (upper, lower) = (edge(&band.upper[joint]), edge(&band.lower[joint]));
-    let area: Vec<(f64, f64)> = upper.into_iter().chain(lower.into_iter().rev()).collect();
-    let chart = |title: &str, y: &str, series: Vec<Series>| Chart {
-        title: title.into(),
-        x: "time [s]".into(),
-        y: y.into(),
-        area: Vec::new(),
-        series,
-    };
     let position = "position [rad]";
+    let model = in_set(suite, joint, "model: its reachable set", position);
     let charts = [
         chart("input u of all runs", "torque [N m]", vec![line(times, &inputs, PLANNED)]),
-        chart("robot: its recordings", position, recorded().collect()),
-        Chart { area, ..chart("model: its reachable set", position, recorded().collect()) },
+        chart("robot: its recordings", position, model.series.clone()),
+        model,
     ];
     let caption = format!(
         "{} of suite {}: open-loop control with compensated gravity and Coulomb friction. One \
@@ -112,6 +92,27 @@ pub(super) fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
         svg: charts_svg(&charts, 3, &caption)?,
         caption,
     })
+}
+
+fn chart(title: &str, y: &str, series: Vec<Series>) -> Chart {
+    let (title, x, y) = (title.into(), "time [s]".into(), y.into());
+    Chart { title, x, y, area: Vec::new(), series }
+}
+
+fn line(times: &[f64], values: &[f64], colour: [u8; 3]) -> Series {
+    let points = times.iter().copied().zip(values.iter().copied()).collect();
+    Series { points, dots: false, colour }
+}
+
+/// Returns a state of all runs over time in its reachable set.
+fn in_set(suite: &Exemplary, state: usize, title: &str, y: &str) -> Chart {
+    let SuiteFigure { times, band, runs, .. } = &suite.figure;
+    // The set's upper edge forward in time, then its lower edge back.
+    let edge = |edge: &[f64]| times.iter().copied().zip(edge.to_vec()).collect::<Vec<_>>();
+    let (upper, lower) = (edge(&band.upper[state]), edge(&band.lower[state]));
+    let area = upper.into_iter().chain(lower.into_iter().rev()).collect();
+    let runs = runs.iter().map(|run| line(&run.times, &run.states[state], RECORDED));
+    Chart { area, ..chart(title, y, runs.collect()) }
 }
 
 /// Draws Fig. 3: the points of the motion of `suite` at which the controller switches to open loop,
@@ -203,13 +204,7 @@ fn planned_chart(motion: &Motion, starts: &[OpenLoop], joint: usize) -> Chart {
     let heights = || series.iter().flat_map(|series| &series.points).map(|point| point.1);
     let ends = [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::MIN, f64::max)];
     series.extend(starts.iter().flat_map(|open| dashed(open.start, ends)));
-    Chart {
-        title: format!("joint{}", joint + 1),
-        x: "time [s]".into(),
-        y: "position [rad]".into(),
-        area: Vec::new(),
-        series,
-    }
+    chart(&format!("joint{}", joint + 1), "position [rad]", series)
 }
 
 /// Draws Fig. 4: the reachable sets of both cases with all recordings of a suite.
@@ -276,38 +271,6 @@ pub(super) fn fig5(found: &Identification) -> Result<PaperFigure> {
         svg: charts_svg(&charts, 3, &caption)?,
         caption,
     })
-}
-
-fn of_joint(figure: &SuiteFigure, joint: usize) -> SuiteFigure {
-    let n = figure.joints.len();
-    let pick = |rows: &[Vec<f64>]| vec![rows[joint].clone(), rows[n + joint].clone()];
-    let band = |band: &reachtube_page::Band| reachtube_page::Band {
-        label: band.label.clone(),
-        lower: pick(&band.lower),
-        upper: pick(&band.upper),
-    };
-    SuiteFigure {
-        suite: figure.suite.clone(),
-        joints: vec![figure.joints[joint].clone()],
-        kinds: figure.kinds.get(joint).copied().into_iter().collect(),
-        times: figure.times.clone(),
-        band: band(&figure.band),
-        inner: figure.inner.as_ref().map(band),
-        nominal: match &figure.nominal {
-            Nominal::Shared(nominal) => Nominal::Shared(pick(nominal)),
-            other => other.clone(),
-        },
-        runs: figure
-            .runs
-            .iter()
-            .map(|run| RunTrace {
-                states: pick(&run.states),
-                temperatures: run.temperatures.get(joint).copied().into_iter().collect(),
-                ..run.clone()
-            })
-            .collect(),
-        ..figure.clone()
-    }
 }
 
 /// Returns a dashed vertical line at `x` between two heights.

@@ -10,8 +10,7 @@ use serde::Serialize;
 
 use super::error::ReproduceError;
 use super::full_speed_motion::full_speed_motion;
-use super::paper::Paper;
-use super::speed::Speed;
+use super::paper::{Paper, Speed};
 use super::trajectories::{BLOCK, Trajectories};
 use crate::error::Result;
 use crate::motion::Motion;

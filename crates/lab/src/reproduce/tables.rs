@@ -6,8 +6,7 @@ use reachtube_reach::Disturbance;
 
 use super::coverage::{Coverage, CoverageRow};
 use super::figures::PaperFigure;
-use super::paper::Paper;
-use super::speed::Speed;
+use super::paper::{Paper, Speed};
 use super::table1::{Cell, Table1};
 use super::table2::{Table2, Table2Case};
 use super::table3::{Effect, Part, Table3, Table3Row};
