@@ -67,7 +67,7 @@ pub(crate) struct Arguments {
     /// campaign in the folder of --out, recorded if it is missing]
     #[arg(long, value_name = "FOLDER")]
     pub data: Option<PathBuf>,
-    /// Seed of the motions
+    /// Seed of the random numbers
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// A tenth of the motions and runs, one campaign, and no exact notion: for a first look
