@@ -63,7 +63,7 @@ Read: TypeAlias = "bytes | _reachtube.Run | tuple[str, str]"
 Entry: TypeAlias = "tuple[int, str, str, str | None, int, str | None, float | None]"
 
 
-def read_one(place: int, row: Recording, part: Part) -> tuple[Entry, Read]:
+def _read_one(place: int, row: Recording, part: Part) -> tuple[Entry, Read]:
     """Read one recording."""
     order, warm = row.order or 0, row.temperature
     entry = (place, row.file, row.suite, row.motion, order, row.sha256, warm)
@@ -117,7 +117,7 @@ def fold_of(job: Job, part: Part) -> bytes:
     summaries: list[dict[str, Any]] = []
     sound = True
     for place, row in part.rows:
-        summary, defects = _take(fold, *read_one(place, row, part))
+        summary, defects = _take(fold, *_read_one(place, row, part))
         sound = sound and not defects
         if part.summaries is not None:
             sha256, samples, duration = summary or (None, None, None)
@@ -158,14 +158,14 @@ def _merge(job: Job, parts: list[bytes]) -> bytes:
     return fleet_of(job).merge(parts)
 
 
-def on_dask(job: Job, parts: list[Part], client: Any, count: Any) -> tuple[bytes, Any]:
-    """Fold the parts on workers, and merge them as a tree; return the whole and its future."""
+def on_dask(job: Job, parts: list[Part], client: Any, count: Any) -> bytes:
+    """Fold the parts on workers, and merge them as a tree."""
     from distributed import as_completed
 
     # Scattered data would be lost with the workers that hold it.
     shared = client.submit(same, job, pure=False, retries=3)
     folds = [client.submit(fold_of, shared, part, pure=False, retries=3) for part in parts]
-    last = as_tree(functools.partial(client.submit, _merge, shared), folds)
+    last = _as_tree(functools.partial(client.submit, _merge, shared), folds)
     # Nothing here keeps a fold, so that a worker drops it when it is merged.
     waiting: Any = as_completed(folds)  # type: ignore[no-untyped-call]
     del folds
@@ -175,17 +175,18 @@ def on_dask(job: Job, parts: list[Part], client: Any, count: Any) -> tuple[bytes
             done += 1
             count(done)
         content: bytes = last.result()
-        return content, last
+        return content
     except BaseException:
         with waiting.lock:
             rest = [*waiting.futures, *waiting.queue.queue]
-        # In this order, see `Points.close`.
+        # Only what no other task needs can be cancelled: Dask's scheduler ends the connection of
+        # a client that cancels a task whose dependents are not wanted any more.
         client.cancel([last])
         client.cancel([*rest, shared])
         raise
 
 
-def as_tree(submit: Any, level: list[Any]) -> Any:
+def _as_tree(submit: Any, level: list[Any]) -> Any:
     """Merge the results of tasks in groups, and these again."""
     while len(level) > 1:
         groups = [level[first : first + GROUP] for first in range(0, len(level), GROUP)]

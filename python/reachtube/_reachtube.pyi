@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, TypeAlias, final
 
 import numpy as np
@@ -10,10 +10,8 @@ _Progress: TypeAlias = Callable[[int, int, list[str]], object] | None
 __all__ = [
     "Abstraction",
     "Fleet",
-    "FleetProblem",
     "Fold",
     "Monitor",
-    "PartPoints",
     "Robot",
     "Run",
     "Source",
@@ -135,8 +133,6 @@ class Fleet:
     def fold(self) -> Fold: ...
     def merge(self, parts: list[bytes]) -> bytes: ...
     def count(self, fold: bytes) -> tuple[int, int, list[str]]: ...
-    def asks_points(self) -> bool: ...
-    def problem(self, fold: bytes) -> FleetProblem: ...
     def check_fit(self, fit: list[str], pull: float | None = None) -> None: ...
     def conform(
         self,
@@ -144,30 +140,9 @@ class Fleet:
         report: bool,
         fit: list[str],
         pull: float | None = None,
-        ask: Callable[[bytes], bytes] | None = None,
         progress: _Progress = None,
     ) -> tuple[str, list[str]]: ...
-    def check(
-        self, fold: bytes, report: bool, ask: Callable[[bytes], bytes] | None = None
-    ) -> str: ...
-
-@final
-class FleetProblem: ...
-
-@final
-class PartPoints:
-    @staticmethod
-    def read(
-        fleet: FleetProblem, recordings: Iterator[tuple[_Entry, bytes | Run | None]]
-    ) -> PartPoints: ...
-    def answer(self, fleet: FleetProblem, question: bytes) -> bytes: ...
-    @staticmethod
-    def merge(answers: list[bytes]) -> bytes: ...
-    def to_bytes(self) -> bytes: ...
-    @staticmethod
-    def from_bytes(data: bytes) -> PartPoints: ...
-    def __reduce__(self) -> tuple[Callable[[bytes], PartPoints], tuple[bytes]]: ...
-    def __sizeof__(self) -> int: ...
+    def check(self, fold: bytes, report: bool) -> str: ...
 
 _Entry: TypeAlias = tuple[int, str, str, str | None, int, str | None, float | None]
 _Taken: TypeAlias = tuple[tuple[str, int, float] | None, list[str]]

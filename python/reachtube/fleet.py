@@ -20,7 +20,6 @@ from ._conform import told
 from ._jobs import Job, Part, fleet_of, fold_of, on_dask
 from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
 from ._model import Model, text_of
-from ._points import Points
 from ._progress import Progress, shown
 from ._renamed import renamed
 from ._robot import Robot
@@ -64,8 +63,8 @@ def _parts(
 
 def _folded(
     job: Job, parts: list[Part], client: Client | None, progress: Progress, what: str
-) -> tuple[bytes, Points]:
-    """Return the fold of all parts, and their points."""
+) -> bytes:
+    """Return the fold of all parts."""
     with shown(progress, what) as tell:
 
         def count(done: int) -> None:
@@ -73,14 +72,12 @@ def _folded(
                 tell(done, len(parts), [])
 
         if client is not None:
-            content, last = on_dask(job, parts, client, count)
-            return content, Points(job, parts, client, last)
+            return on_dask(job, parts, client, count)
         whole = fleet_of(job).fold()
         for done, part in enumerate(parts, 1):
             whole.merge(fleet_of(job), fold_of(job, part))
             count(done)
-        content = whole.to_bytes()
-        return content, Points(job, parts, None, content)
+        return whole.to_bytes()
 
 
 @renamed(model="paper_model")
@@ -140,9 +137,8 @@ def conform(
     progress
         As for `reachtube.conform`.
     settings
-        The other settings of `reachtube.conform`. The notions ``"phase-plane"`` and ``"exact"``
-        of a linear model need all points: workers keep them, 24 n bytes for each sample of a
-        recording with n joints, and are asked in rounds.
+        The other settings of `reachtube.conform`. Only the notion ``"hull"`` is proved of a
+        fleet: the others need all points in one memory.
 
     Returns
     -------
@@ -162,15 +158,9 @@ def conform(
     fleet_of(job).fold()
     fleet_of(job).check_fit(groups, pull)
     parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
-    whole, points = _folded(job, parts, client, progress, "fleet.conform")
-    ask = points.ask if fleet_of(job).asks_points() else None
-    try:
-        with shown(progress, "fleet.conform: sets") as tell:
-            found, notes = fleet_of(job).conform(
-                whole, on_defect == "report", groups, pull, ask, tell
-            )
-    finally:
-        points.close()
+    whole = _folded(job, parts, client, progress, "fleet.conform")
+    with shown(progress, "fleet.conform: sets") as tell:
+        found, notes = fleet_of(job).conform(whole, on_defect == "report", groups, pull, tell)
     return told(found, notes, 4)
 
 
@@ -214,8 +204,8 @@ def check(
     storage_options
         Options of the store, for fsspec.
     notion
-        Directions in which recordings must lie in the set; the model's own where not given. Points
-        of the notions ``"phase-plane"`` and ``"exact"`` are asked as by `conform`.
+        Directions in which recordings must lie in the set; the model's own where not given. A
+        model of another notion than ``"hull"`` is checked with ``notion="hull"``.
     until
         Samples later than this many seconds after the first are not used; the model's own limit
         where it is not given.
@@ -232,9 +222,5 @@ def check(
     job = Job("model", text_of(model), differing(notion, until, max_gap))
     fleet_of(job).fold()
     parts = _parts(manifest, runs_per_task, storage_options, (resume, summaries), robots)
-    whole, points = _folded(job, parts, client, progress, "fleet.check")
-    ask = points.ask if fleet_of(job).asks_points() else None
-    try:
-        return Check(fleet_of(job).check(whole, on_defect == "report", ask))
-    finally:
-        points.close()
+    whole = _folded(job, parts, client, progress, "fleet.check")
+    return Check(fleet_of(job).check(whole, on_defect == "report"))

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
-use reachtube::conform::fleet::{FleetProblem, Fold, OnDefect};
-use reachtube::conform::{self as product, Answer, Model, Notion, Problem, Setup, Tube};
+use reachtube::conform::fleet::{Fold, OnDefect};
+use reachtube::conform::{self as product, Answer, Model, Problem, Setup, Tube};
 use reachtube::recordings::{Defect, DefectKind};
 use serde_json::{Map, Value};
 
@@ -14,7 +14,6 @@ use crate::abstraction::NativeAbstraction;
 use crate::conformance::{basis, differing, fit_settings, setup, told};
 use crate::failure::{Failure, Result};
 use crate::manifest::{Entry, entry, read_csv, read_run};
-use crate::points::{NativeFleetProblem, asking};
 use crate::pool;
 use crate::recordings::NativeRun;
 use crate::robot::NativeRobot;
@@ -93,21 +92,6 @@ impl NativeFleet {
         })
     }
 
-    /// Returns whether single points count, which `conform` and `check` ask for.
-    fn asks_points(&self) -> bool {
-        self.setup.settings().notion != Notion::Hull
-    }
-
-    /// Prepares what every part needs to find its points.
-    fn problem(&self, py: Python<'_>, fold: PyBackedBytes) -> PyResult<NativeFleetProblem> {
-        let setup = Arc::clone(&self.setup);
-        watched(py, None, move |_| {
-            let fold = Fold::from_bytes(&setup, &fold)?;
-            let problem = FleetProblem::new((*setup).clone(), fold)?;
-            Ok(NativeFleetProblem { problem })
-        })
-    }
-
     /// Refuses what cannot be fitted, whatever the recordings are.
     #[pyo3(signature = (fit, pull=None))]
     fn check_fit(&self, py: Python<'_>, fit: Vec<String>, pull: Option<f64>) -> PyResult<()> {
@@ -115,23 +99,14 @@ impl NativeFleet {
         watched(py, None, move |_| {
             if let Some(settings) = fit_settings(&fit, pull)? {
                 settings.check(&setup)?;
-                if setup.settings().notion != Notion::Hull {
-                    return Err(Failure::Setting(
-                        "a fit moves the nominal motions, and the points that workers hold are \
-                         deviations from those before it: fit with notion=\"hull\""
-                            .into(),
-                    ));
-                }
             }
             Ok(())
         })
     }
 
     /// Finds the smallest sets, of a fitted nominal model where groups are given, and returns the
-    /// model file's text and notes. `ask` returns the answer of all points to a question, both in
-    /// bytes.
-    #[pyo3(signature = (fold, report, fit, pull=None, ask=None, progress=None))]
-    #[allow(clippy::too_many_arguments)]
+    /// model file's text and notes.
+    #[pyo3(signature = (fold, report, fit, pull=None, progress=None))]
     fn conform(
         &self,
         py: Python<'_>,
@@ -139,46 +114,25 @@ impl NativeFleet {
         report: bool,
         fit: Vec<String>,
         pull: Option<f64>,
-        ask: Option<Py<PyAny>>,
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<(String, Vec<String>)> {
         let setup = Arc::clone(&self.setup);
-        asking(ask, |server| {
-            watched(py, progress.as_ref(), move |watch| {
-                let problem = problem(&setup, &fold, report)?;
-                let fit = fit_settings(&fit, pull)?;
-                let answer = match server.as_deref().filter(|_| fit.is_none()) {
-                    Some(server) => Answer::elsewhere(problem, server, watch)?,
-                    None => Answer::new(problem, fit.as_ref(), None, watch)?,
-                };
-                Ok(told(&answer))
-            })
+        watched(py, progress.as_ref(), move |watch| {
+            let problem = problem(&setup, &fold, report)?;
+            let fit = fit_settings(&fit, pull)?;
+            Ok(told(&Answer::new(problem, fit.as_ref(), None, watch)?))
         })
     }
 
     /// Compares the recordings with the model's reachable sets, and returns the answer as JSON.
-    #[pyo3(signature = (fold, report, ask=None))]
-    fn check(
-        &self,
-        py: Python<'_>,
-        fold: PyBackedBytes,
-        report: bool,
-        ask: Option<Py<PyAny>>,
-    ) -> PyResult<String> {
+    fn check(&self, py: Python<'_>, fold: PyBackedBytes, report: bool) -> PyResult<String> {
         let (setup, model) = (Arc::clone(&self.setup), self.model.clone());
-        asking(ask, |server| {
-            watched(py, None, move |_| {
-                let model = model.ok_or_else(|| Failure::Setting("there is no model".into()))?;
-                let problem = problem(&setup, &fold, report)?;
-                let tube = Tube::new(&problem, model.sets())?;
-                let check = match server.as_deref() {
-                    Some(server) => {
-                        product::fleet::check_elsewhere(&model, &problem, &tube, server)?
-                    }
-                    None => product::check(&model, &problem, &tube)?,
-                };
-                Ok(serde_json::to_string(&check).expect("a check has string keys"))
-            })
+        watched(py, None, move |_| {
+            let model = model.ok_or_else(|| Failure::Setting("there is no model".into()))?;
+            let problem = problem(&setup, &fold, report)?;
+            let tube = Tube::new(&problem, model.sets())?;
+            let check = product::check(&model, &problem, &tube)?;
+            Ok(serde_json::to_string(&check).expect("a check has string keys"))
         })
     }
 }

@@ -16,7 +16,6 @@ mod logs_on_disk;
 mod manifest;
 mod model;
 mod monitor;
-mod points;
 mod pool;
 mod prepare;
 mod recordings;
@@ -48,8 +47,6 @@ mod _reachtube {
     use crate::model::{cut, model, prepared};
     #[pymodule_export]
     use crate::monitor::NativeMonitor;
-    #[pymodule_export]
-    use crate::points::{NativeFleetProblem, NativePartPoints};
     #[pymodule_export]
     use crate::prepare::prepare;
     #[pymodule_export]

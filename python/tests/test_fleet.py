@@ -308,6 +308,8 @@ def test_wrong_manifests_are_refused(tmp_path: Path) -> None:
     )
     with pytest.raises(rt.ReachtubeError, match="row 0"):
         fleet.conform(robot, tmp_path / "empty.parquet", torque="motor")
+    with pytest.raises(rt.ReachtubeError, match="use the notion hull"):
+        fleet.conform(robot, tmp_path / "empty.parquet", torque="motor", notion="exact")
 
 
 @pytest.fixture

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use crate::check::Check;
 use crate::claim::certificate::Certificate;
-use crate::claim::remote::PointServer;
-use crate::conformance::{Conformance, conform_elsewhere, conform_fitted};
+use crate::conformance::{Conformance, conform_fitted};
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::fit::fit::{Fitted, fit};
@@ -65,20 +64,6 @@ impl Answer {
             Some(record) => model.with_fit(record),
             None => model,
         }
-    }
-
-    /// Finds the smallest sets for the problem of a fold whose points `server` asks.
-    ///
-    /// # Errors
-    ///
-    /// As [`conform_elsewhere`](crate::fleet::conform_elsewhere).
-    pub fn elsewhere(
-        problem: Problem,
-        server: &dyn PointServer,
-        progress: &dyn Progress,
-    ) -> Result<Self> {
-        let found = conform_elsewhere(&problem, server, progress)?;
-        Ok(Self { model: Model::new(&problem, &found), problem, found })
     }
 
     /// Adds radii to X0 and U, 3n, rad, rad/s and N m, and proves the wider sets: an allowance for

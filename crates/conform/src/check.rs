@@ -1,7 +1,6 @@
 use serde::Serialize;
 
 use crate::claim::notion::judged;
-use crate::claim::remote::PointServer;
 use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
 use crate::data::suite::Suite;
@@ -63,35 +62,7 @@ pub struct Check {
 ///
 /// As [`Problem::run`]. A violation is no error.
 pub fn check(model: &Model, problem: &Problem, tube: &Tube) -> Result<Check> {
-    check_asking(model, problem, tube, None)
-}
-
-/// Does what [`check`] does for the problem of a fold whose points `server` asks: the notions
-/// phase-plane and exact need them.
-///
-/// # Guarantee
-///
-/// As [`Verdict::new`].
-///
-/// # Errors
-///
-/// As [`check`], and errors of `server`.
-pub fn check_elsewhere(
-    model: &Model,
-    problem: &Problem,
-    tube: &Tube,
-    server: &dyn PointServer,
-) -> Result<Check> {
-    check_asking(model, problem, tube, Some(server))
-}
-
-fn check_asking(
-    model: &Model,
-    problem: &Problem,
-    tube: &Tube,
-    server: Option<&dyn PointServer>,
-) -> Result<Check> {
-    let judged = judged(problem, tube, server)?;
+    let judged = judged(problem, tube)?;
     let tube = judged.as_ref().unwrap_or(tube);
     let mut excess = vec![0.0f64; 2 * problem.joints()];
     let mut worst: Vec<Option<Witness>> = vec![None; 2 * problem.joints()];

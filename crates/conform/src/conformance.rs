@@ -6,7 +6,6 @@ use reachtube_scalar::rounding::add_down;
 
 use crate::claim::claim::Claim;
 use crate::claim::notion::claim;
-use crate::claim::remote::PointServer;
 use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
 use crate::data::settings::check_allowance;
@@ -121,7 +120,7 @@ pub fn conform(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem, None)?, None, (progress, resume))
+    conform_claim(problem, &*claim(problem)?, None, (progress, resume))
 }
 
 /// Does what [`conform`] does for the problem of a fit, which left motions out of both the nominal
@@ -140,25 +139,7 @@ pub(crate) fn conform_fitted(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem, None)?, left_out, (progress, resume))
-}
-
-/// Does what [`conform`] does for the problem of a fold whose points `server` asks: the notions
-/// phase-plane and exact need them.
-///
-/// # Guarantee
-///
-/// As [`conform`].
-///
-/// # Errors
-///
-/// As [`conform`], and errors of `server`.
-pub fn conform_elsewhere(
-    problem: &Problem,
-    server: &dyn PointServer,
-    progress: &dyn Progress,
-) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem, Some(server))?, None, (progress, None))
+    conform_claim(problem, &*claim(problem)?, left_out, (progress, resume))
 }
 
 fn conform_claim(

@@ -1,7 +1,7 @@
 //! What recordings must satisfy beyond the rows.
 
 use crate::claim::look::Look;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::sets::UncertaintySets;
 use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
@@ -19,15 +19,12 @@ pub(crate) trait Claim: Sync {
     ///
     /// # Errors
     ///
-    /// As [`Plant::tube`], and failures to reach the recordings.
+    /// As [`Plant::tube`].
     fn judge(&self, plant: &dyn Plant, sets: &UncertaintySets, look: &Look) -> Result<Tube>;
 
-    /// Returns the recorded point that is furthest along each direction, of all at its sample.
-    ///
-    /// # Errors
-    ///
-    /// Fails if the recordings cannot be reached.
-    fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>>;
+    /// Returns the recorded point that is furthest along each direction, of all at its sample,
+    /// which must have a point.
+    fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Vec<Along>;
 
     /// Returns the part by which sets may have to grow for a point before a search goes on; `None`
     /// where only the rows are claimed.
@@ -42,16 +39,11 @@ impl Claim for Rows {
         Ok(plant.tube(sets, None)?.0)
     }
 
-    fn furthest(&self, _: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {
-        Ok(Vec::new())
+    fn furthest(&self, _: &[(At, Vec<f64>)]) -> Vec<Along> {
+        Vec::new()
     }
 
     fn tolerance(&self) -> Option<f64> {
         None
     }
-}
-
-/// The error for an answer to another question.
-pub(crate) fn other_answer() -> Error {
-    Error::Fold("the points gave an answer to another question; report this".into())
 }

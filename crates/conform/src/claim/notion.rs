@@ -2,8 +2,7 @@
 
 use crate::claim::claim::{Claim, Rows};
 use crate::claim::look::Look;
-use crate::claim::points::{Points, tolerance};
-use crate::claim::remote::{PointServer, Remote};
+use crate::claim::points::Points;
 use crate::data::notion::Notion;
 use crate::data::problem::Problem;
 use crate::data::settings::Settings;
@@ -30,23 +29,15 @@ impl Settings {
     }
 }
 
-/// Returns what the notion of a problem claims, about points that `server` has where there is one.
+/// Returns what the notion of a problem claims.
 ///
 /// # Errors
 ///
 /// As [`Points::new`].
-pub(crate) fn claim<'a>(
-    problem: &'a Problem,
-    server: Option<&'a dyn PointServer>,
-) -> Result<Box<dyn Claim + 'a>> {
-    let settings = problem.settings();
-    Ok(match (settings.notion, server) {
-        (notion, _) if !notion.asks_points() => Box::new(Rows),
-        (_, Some(server)) => {
-            let root = &problem.recordings().root;
-            Box::new(Remote { server, root, tolerance: tolerance(settings) })
-        }
-        (_, None) => Box::new(Points::new(problem)?),
+pub(crate) fn claim(problem: &Problem) -> Result<Box<dyn Claim + '_>> {
+    Ok(match problem.settings().notion {
+        Notion::Hull => Box::new(Rows),
+        _ => Box::new(Points::new(problem)?),
     })
 }
 
@@ -78,7 +69,7 @@ impl Tube {
         match problem.dynamics().linear_system() {
             Some(_) => Ok(Linear::tube_without_points(problem.grids()?.as_slice(), sets)),
             // These sets are not computed twice: the points are judged on the way.
-            None => claim(problem, None)?.judge(&Polynomial::new(problem), &sets, &Look::proof()),
+            None => claim(problem)?.judge(&Polynomial::new(problem), &sets, &Look::proof()),
         }
     }
 }
@@ -89,14 +80,10 @@ impl Tube {
 /// # Errors
 ///
 /// As [`Claim::judge`].
-pub(crate) fn judged(
-    problem: &Problem,
-    tube: &Tube,
-    server: Option<&dyn PointServer>,
-) -> Result<Option<Tube>> {
+pub(crate) fn judged(problem: &Problem, tube: &Tube) -> Result<Option<Tube>> {
     if !problem.settings().notion.asks_points() || tube.judged.is_some() {
         return Ok(None);
     }
-    let claim = claim(problem, server)?;
+    let claim = claim(problem)?;
     claim.judge(&*plant(problem)?, &tube.sets, &Look::proof()).map(Some)
 }

@@ -1,10 +1,9 @@
 //! Recorded points that lie in the reachable set, or in its projections on the phase planes.
 
-use std::borrow::Cow;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
-use crate::claim::claim::{Claim, other_answer};
-use crate::claim::look::{Look, Near, Question, Reply};
+use crate::claim::claim::Claim;
+use crate::claim::look::{Look, Near};
 use crate::claim::sample_points::{SamplePoints, points};
 use crate::claim::sample_set::{CentredPoints, OUTSIDE, SampleSet};
 use crate::data::problem::Problem;
@@ -27,18 +26,15 @@ const NEAR: f64 = 1e-3;
 /// How accurately the growth is known that a point outside a computed outer set needs.
 const GAUGE: f64 = 1e-7;
 
-/// For each sample, the points in a list; lists that were asked for stay.
-pub(crate) type KnownLists = Arc<Mutex<Vec<(Near, Vec<Vec<usize>>)>>>;
-
 /// Recorded points in memory.
 pub(crate) struct Points<'a> {
-    samples: Cow<'a, [SamplePoints]>,
+    problem: &'a Problem,
+    samples: Vec<SamplePoints>,
     /// The states of each projection in which points must lie in the set.
     projections: Vec<Vec<usize>>,
     tolerance: f64,
-    lists: KnownLists,
-    /// Names a run.
-    file: Box<dyn Fn(u32) -> String + Sync + 'a>,
+    /// For each sample, the points in a list; lists that were asked for stay.
+    lists: Mutex<Vec<(Near, Vec<Vec<usize>>)>>,
 }
 
 impl<'a> Points<'a> {
@@ -48,38 +44,15 @@ impl<'a> Points<'a> {
     ///
     /// As [`points`].
     pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
-        let file = |run: u32| problem.entry(run as usize).file.clone();
-        let samples = points(problem)?.into();
-        let settings = (problem.settings(), problem.joints());
-        Ok(Self::of(samples, settings, KnownLists::default(), Box::new(file)))
-    }
-
-    /// Takes points that were collected; `file` names a run.
-    pub(crate) fn of(
-        samples: Cow<'a, [SamplePoints]>,
-        (settings, joints): (&Settings, usize),
-        lists: KnownLists,
-        file: Box<dyn Fn(u32) -> String + Sync + 'a>,
-    ) -> Self {
+        let (settings, joints) = (problem.settings(), problem.joints());
         let rows = settings.states.rows(2 * joints);
         let projections = settings.notion.projections(rows, joints);
-        Self { samples, projections, tolerance: tolerance(settings), lists, file }
+        let (samples, lists) = (points(problem)?, Mutex::default());
+        Ok(Self { problem, samples, projections, tolerance: tolerance(settings), lists })
     }
 
-    /// Answers a question of another process.
-    ///
-    /// # Errors
-    ///
-    /// As [`Claim::judge`].
-    pub(crate) fn answer(&self, plant: &dyn Plant, question: &Question) -> Result<Reply> {
-        Ok(match question {
-            Question::Judge { sets, look } => {
-                Reply::Judged(self.judge(plant, sets, look)?.judged.unwrap_or_default())
-            }
-            Question::Furthest { directions } => {
-                Reply::Furthest(directions.iter().map(|along| self.along(along)).collect())
-            }
-        })
+    fn file(&self, run: u32) -> String {
+        self.problem.entry(run as usize).file.clone()
     }
 
     /// Returns the index of a sample, which is in the order of strands and samples.
@@ -87,12 +60,12 @@ impl<'a> Points<'a> {
         self.samples.binary_search_by_key(&at, SamplePoints::place).ok()
     }
 
-    fn along(&self, (at, direction): &(At, Vec<f64>)) -> Option<Along> {
-        let points = &self.samples[self.index(*at)?];
+    fn along(&self, (at, direction): &(At, Vec<f64>)) -> Along {
+        let points = &self.samples[self.index(*at).expect("a sample with a point")];
         let (point, value) = points.furthest(direction);
         let owner = points.owners[point];
-        let (file, point) = ((self.file)(owner.1), points.point(point).to_vec());
-        Some(Along { owner, file, point, value })
+        let (file, point) = (self.file(owner.1), points.point(point).to_vec());
+        Along { owner, file, point, value }
     }
 
     /// Returns, for each sample, the points that are in one of the lists.
@@ -208,7 +181,7 @@ impl<'a> Points<'a> {
         let mut direction = vec![0.0; deviation.len()];
         self.projections[projection].iter().zip(short).for_each(|(&i, l)| direction[i] = l);
         let owner = points.at.owners[point];
-        let file = (self.file)(owner.1);
+        let file = self.file(owner.1);
         PointOutside { owner, file, deviation, direction, ratio, reach: None }
     }
 
@@ -226,7 +199,7 @@ impl<'a> Points<'a> {
             }
             let first = (slice.at(), projection as u32);
             for (point, _) in &unproved {
-                judged.leave(owners[*point], (self.file)(owners[*point].1), first, 1);
+                judged.leave(owners[*point], self.file(owners[*point].1), first, 1);
             }
             judged.outside += unproved.iter().filter(|(_, ratio)| ratio.is_some()).count();
             judged = judged.merge(if is_exact {
@@ -259,7 +232,7 @@ impl<'a> Points<'a> {
             for owner in &points.owners {
                 let count = self.projections.len();
                 judged.points += count;
-                judged.leave(*owner, (self.file)(owner.1), (points.place(), 0), count);
+                judged.leave(*owner, self.file(owner.1), (points.place(), 0), count);
             }
         }
     }
@@ -296,9 +269,8 @@ impl Claim for Points<'_> {
         Ok(Tube { judged: Some(judged), ..tube })
     }
 
-    fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Result<Vec<Along>> {
-        let along = |direction| self.along(direction).ok_or_else(other_answer);
-        directions.iter().map(along).collect()
+    fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Vec<Along> {
+        directions.iter().map(|direction| self.along(direction)).collect()
     }
 
     fn tolerance(&self) -> Option<f64> {
@@ -307,7 +279,7 @@ impl Claim for Points<'_> {
 }
 
 /// Returns the part by which sets may have to grow for a point before a search goes on.
-pub(crate) fn tolerance(settings: &Settings) -> f64 {
+fn tolerance(settings: &Settings) -> f64 {
     match settings.noise {
         Noise::None => TOLERANCE,
         Noise::Fitted | Noise::Fixed(_) => TOLERANCE_WITH_NOISE,

@@ -3,7 +3,6 @@
 
 use reachtube_recordings::Run;
 use reachtube_scalar::Interval;
-use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
 use crate::data::problem::Problem;
@@ -12,7 +11,7 @@ use crate::tube::deviation::Nominal;
 use crate::tube::judged::At;
 
 /// The points of runs at one sample of one strand: a grid of a linear model, a case of any other.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct SamplePoints {
     /// The strand.
     pub strand: usize,
@@ -32,12 +31,6 @@ impl SamplePoints {
     /// Iterates over the points, 2n entries each.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &[f64]> {
         self.values.chunks_exact(self.states.max(1))
-    }
-
-    /// Returns whether values, errors and owners belong to the same points.
-    pub(crate) fn fits(&self) -> bool {
-        let count = self.owners.len() * self.states;
-        self.states > 0 && [self.values.len(), self.errors.len()] == [count; 2]
     }
 
     /// Returns strand and sample.
@@ -90,7 +83,7 @@ fn states(problem: &Problem) -> Result<Vec<SamplePoints>> {
     for (strand, case) in cases.iter().enumerate() {
         let suite = &problem.recordings().suites[case.suite];
         let is_own = |index: usize| case.run.is_none_or(|run| run == index);
-        for summary in suite.every_run()?.iter().filter(|summary| is_own(summary.index)) {
+        for summary in suite.runs.iter().filter(|summary| is_own(summary.index)) {
             let (owner, run) =
                 ((case.suite as u32, summary.index as u32), problem.run(summary.index)?);
             for at in all.0[strand].iter_mut().take(run.len().saturating_sub(1)) {
@@ -105,12 +98,14 @@ fn states(problem: &Problem) -> Result<Vec<SamplePoints>> {
 
 /// Collects the deviations of all runs from the nominal motions of a linear model.
 fn deviations(problem: &Problem) -> Result<Vec<SamplePoints>> {
-    let mut all = AllPoints::new(problem)?;
+    let grids = problem.grids()?;
+    let lengths = grids.as_slice().iter().map(|grid| grid.propagation.grid().len());
+    let mut all = AllPoints::empty(lengths, 2 * problem.joints());
+    let of_case = |case: Case| Ok((Nominal::new(grids, &case), case.run));
     for (index, suite) in problem.recordings().suites.iter().enumerate() {
-        for (nominal, run) in nominals(problem, index)? {
-            let mine =
-                suite.every_run()?.iter().filter(|summary| run.is_none_or(|r| r == summary.index));
-            for summary in mine {
+        for (nominal, run) in problem.cases_of(index, of_case)? {
+            let is_own = |index: usize| run.is_none_or(|run| run == index);
+            for summary in suite.runs.iter().filter(|summary| is_own(summary.index)) {
                 let owner = (index as u32, summary.index as u32);
                 all.take(owner, &nominal, &*problem.run(summary.index)?);
             }
@@ -119,31 +114,10 @@ fn deviations(problem: &Problem) -> Result<Vec<SamplePoints>> {
     Ok(all.into_samples())
 }
 
-/// Returns the nominal motions of a suite, with the run where it belongs to one run.
-///
-/// # Errors
-///
-/// As [`Problem::grids`] and [`Problem::run`].
-pub(crate) fn nominals(problem: &Problem, suite: usize) -> Result<Vec<(Nominal, Option<usize>)>> {
-    let grids = problem.grids()?;
-    problem.cases_of(suite, |case: Case| Ok((Nominal::new(grids, &case), case.run)))
-}
-
 /// Points by grid and sample.
-#[derive(Debug)]
-pub(crate) struct AllPoints(Vec<Vec<SamplePoints>>);
+struct AllPoints(Vec<Vec<SamplePoints>>);
 
 impl AllPoints {
-    /// Returns no points, at every sample of the problem's grids but the first.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::grids`].
-    pub(crate) fn new(problem: &Problem) -> Result<Self> {
-        let lengths = problem.grids()?.as_slice().iter().map(|grid| grid.propagation.grid().len());
-        Ok(Self::empty(lengths, 2 * problem.joints()))
-    }
-
     /// Returns no points, at every sample but the first of strands of these lengths.
     fn empty(lengths: impl Iterator<Item = usize>, states: usize) -> Self {
         let empty = |(strand, samples): (usize, usize)| {
@@ -154,7 +128,7 @@ impl AllPoints {
     }
 
     /// Takes the points of a run: its suite and index are `owner`.
-    pub(crate) fn take(&mut self, owner: (u32, u32), nominal: &Nominal, recorded: &Run) {
+    fn take(&mut self, owner: (u32, u32), nominal: &Nominal, recorded: &Run) {
         let samples = self.0[nominal.grid].iter_mut().take(recorded.len().saturating_sub(1));
         for at in samples {
             at.take(recorded.state(at.sample), nominal.trajectory.state(at.sample));
@@ -163,7 +137,7 @@ impl AllPoints {
     }
 
     /// Returns the points at the samples that have some.
-    pub(crate) fn into_samples(self) -> Vec<SamplePoints> {
+    fn into_samples(self) -> Vec<SamplePoints> {
         self.0.into_iter().flatten().filter(|at| !at.owners.is_empty()).collect()
     }
 }

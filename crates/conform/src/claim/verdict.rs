@@ -121,7 +121,7 @@ impl Verdict {
         mut visit: impl FnMut(&Row),
     ) -> Result<Self> {
         // Without its points, a verdict would claim less than the notion does.
-        let own = judged(problem, tube, None)?;
+        let own = judged(problem, tube)?;
         let tube = own.as_ref().unwrap_or(tube);
         let mut suites: Vec<SuiteVerdict> =
             problem.recordings().suites.iter().map(SuiteVerdict::start).collect();

@@ -226,11 +226,6 @@ impl Problem {
         self.read.origin.is_simulated()
     }
 
-    /// Returns whether the problem was made of a fold.
-    pub(crate) fn is_folded(&self) -> bool {
-        matches!(self.read.origin, Origin::Fold(_))
-    }
-
     /// Returns the samples of run `index`: from memory, or read once more where they were not kept.
     ///
     /// # Errors

@@ -110,7 +110,7 @@ struct Basis<'a> {
 
 impl<'a> Basis<'a> {
     fn new(given: &'a Problem, settings: &'a FitSettings) -> Result<Self> {
-        refuse(given, settings)?;
+        settings.check(given.setup())?;
         let groups = &*settings.groups;
         let mut other = without_held_out(given)?;
         let is_held_out = other.is_some();
@@ -220,19 +220,6 @@ fn search(fit: &FitTask, pull: f64, dropped: &[Group]) -> Result<FoundNumbers> {
     let value = |answer: &Result<FoundNumbers>| answer.as_ref().map_or(f64::INFINITY, |a| a.value);
     let best = answers.into_iter().min_by(|a, b| value(a).total_cmp(&value(b)));
     best.expect("a search that holds nothing")
-}
-
-/// Refuses what cannot be fitted, whatever the recordings are.
-fn refuse(problem: &Problem, settings: &FitSettings) -> Result<()> {
-    settings.check(problem.setup())?;
-    if problem.settings().notion.asks_points() && problem.is_folded() {
-        return Err(Error::Fit(
-            "a fit moves the nominal motions, and the points that other processes hold are \
-             deviations from those before it; fit for the notion hull"
-                .into(),
-        ));
-    }
-    Ok(())
 }
 
 fn one_motion(others_are_held_out: bool) -> String {

@@ -39,7 +39,7 @@ impl AnyRun {
         let condition = middle(problem);
         let blind =
             problem.with_setup(Setup { condition: Some(condition.clone()), ..setup.clone() });
-        let found = smallest_sets_alone(&blind, &*claim(&blind, None)?)?;
+        let found = smallest_sets_alone(&blind, &*claim(&blind)?)?;
         let verdict = Verdict::new(&blind, &found.tube)?;
         let (sets, cost) = (found.tube.sets, found.cost);
         Ok(Some(Self { condition, sets, cost, verified: verdict.conformant }))

@@ -86,7 +86,7 @@ pub(crate) fn calibrate(
     let motions = Motions::new(problem.recordings());
     let held_out = held_out(problem, &motions)?;
     let fit = problem.with_suites(|suite| !held_out.contains(motions.of_suite(suite)));
-    let first = smallest_sets(&fit, &*claim(&fit, None)?, left_out, how)?;
+    let first = smallest_sets(&fit, &*claim(&fit)?, left_out, how)?;
     let Found { tube: Tube { sets: fitted, .. }, search, left_out, .. } = first;
     let input_only = problem.settings().nominal == NominalStart::Own;
     let linear =
@@ -211,7 +211,7 @@ pub(crate) fn not_smallest(
     scale: Option<f64>,
 ) -> Result<Found> {
     let plant = &*plant(problem)?;
-    let claim = &*claim(problem, None)?;
+    let claim = &*claim(problem)?;
     let tube = match scale {
         Some(scale) => prove((problem, plant), claim, sets, scale)?,
         None => claim.judge(plant, sets, &Look::proof())?,

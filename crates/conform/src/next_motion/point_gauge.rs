@@ -36,7 +36,7 @@ pub(crate) fn point_gauge(
     if !problem.settings().notion.asks_points() {
         return Ok(Some(rows));
     }
-    let (claim, plant) = (&*claim(problem, None)?, &*plant(problem)?);
+    let (claim, plant) = (&*claim(problem)?, &*plant(problem)?);
     let tolerance = claim.tolerance().unwrap_or_default();
     let mut factor = rows;
     for _ in 0..ROUNDS {
@@ -63,13 +63,13 @@ pub(crate) fn leave_points_out(problem: &Problem, motion: &str) -> Result<LeftOu
     let motions = Motions::new(problem.recordings());
     let [own, others] = [true, false]
         .map(|own| problem.with_suites(|suite| (motions.of_suite(suite) == motion) == own));
-    let sets = smallest_sets_alone(&others, &*claim(&others, None)?)?.tube.sets;
+    let sets = smallest_sets_alone(&others, &*claim(&others)?)?.tube.sets;
     let input_only = problem.settings().nominal == NominalStart::Own;
     let [_, input, both] = Program::of_problem(&own)?.growth_factors(&sets);
     let rows = if input_only { input } else { both };
     let grown = |factor: f64| sets.grown(factor, input_only);
     let gauge = rows.map_or(Ok(None), |rows| point_gauge(&own, rows, &grown))?;
-    let tube = claim(&own, None)?.judge(&*plant(&own)?, &sets, &Look::proof())?;
+    let tube = claim(&own)?.judge(&*plant(&own)?, &sets, &Look::proof())?;
     let judged = tube.judged.unwrap_or_default();
     Ok(LeftOut {
         motion: motion.into(),

@@ -103,7 +103,7 @@ pub(super) fn search<'a>(
         let outside = judged.furthest.iter();
         let outside: Vec<(At, Vec<f64>)> =
             outside.map(|((at, _), point)| (*at, point.direction.clone())).collect();
-        let new = state.take_points(&judged, claim.furthest(&outside)?);
+        let new = state.take_points(&judged, claim.furthest(&outside));
         if !is_exact {
             missing(rows.len(), new, judged.unproved_count())
                 .iter()

@@ -12,7 +12,7 @@ pub(crate) type At = (u32, u32);
 pub(crate) type Owner = (u32, u32);
 
 /// What was found about recorded points.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Judged {
     /// Number of points that were judged, each counted once for each projection.
     pub points: usize,
@@ -30,7 +30,7 @@ pub(crate) struct Judged {
 }
 
 /// A run with points that were not proved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct UnprovedRun {
     pub file: String,
     /// Number of these points.
@@ -40,7 +40,7 @@ pub(crate) struct UnprovedRun {
 }
 
 /// A point outside a reachable set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PointOutside {
     pub owner: Owner,
     /// The recording.
@@ -106,16 +106,6 @@ impl PointOutside {
     fn further(self, other: Self) -> Self {
         let is_first =
             self.ratio > other.ratio || self.ratio == other.ratio && self.owner <= other.owner;
-        if is_first { self } else { other }
-    }
-}
-
-impl Along {
-    /// Returns the point that is further along; of two as far, the lower owner's.
-    #[must_use]
-    pub(crate) fn further(self, other: Self) -> Self {
-        let is_first =
-            self.value > other.value || self.value == other.value && self.owner <= other.owner;
         if is_first { self } else { other }
     }
 }

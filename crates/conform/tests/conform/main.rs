@@ -14,7 +14,6 @@ mod monitor;
 mod next_motion;
 mod nonlinear;
 mod notion;
-mod part_points;
 mod plausibility;
 mod read_once;
 mod sampled_states;

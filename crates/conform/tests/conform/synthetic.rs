@@ -10,10 +10,8 @@ use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome};
 use nalgebra::DVector;
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::settings::{Centre, NominalStart, Weights};
-use reachtube_conform::{Conformance, Model, Noise, Problem, Settings, UncertaintySets, reach};
-use reachtube_reach::{
-    Disturbance, Hyperrectangle, IntervalMatrix, LinearSystem, Propagation, TimeGrid,
-};
+use reachtube_conform::{Conformance, Model, Noise, Problem, Settings, reach};
+use reachtube_reach::{Disturbance, IntervalMatrix, LinearSystem, Propagation, TimeGrid};
 use reachtube_recordings::{DataSet, ReadOptions, RunSource, Torque};
 use reachtube_robot::Robot;
 

@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 
 use crate::advice::Advice;
 use crate::data::input::RunInput;
-use crate::data::settings::{NominalStart, Settings};
+use crate::data::settings::NominalStart;
 use crate::data::setup::{Drive, Setup, read_options};
 use crate::data::shape::Shape;
 use crate::error::{Error, Result};
@@ -32,11 +32,9 @@ impl Context {
     pub(crate) fn new(setup: &Setup) -> Result<Self> {
         let Setup { drive, dynamics, settings, .. } = setup;
         settings.validate(dynamics.inputs())?;
-        let is_linear = setup.dynamics.linear_system().is_some();
-        let Settings { notion, .. } = settings;
-        if notion.asks_points() && !is_linear {
-            let problem = "every notion but the hull needs whole recordings of a model that is \
-                           not linear: use the notion hull, or read the recordings on one machine";
+        if settings.notion.asks_points() {
+            let problem = "every notion but the hull needs the points of all recordings in one \
+                           memory: use the notion hull, or read the recordings on one machine";
             return Err(Error::Fold(Advice::from(problem).with("notion", "hull")));
         }
         let is_own = settings.nominal == NominalStart::Own

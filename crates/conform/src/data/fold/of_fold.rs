@@ -28,8 +28,7 @@ impl Problem {
     /// Makes the problem of the recordings that were folded, which equals the problem of
     /// [`read`](Self::read) over the same recordings: the same sets, verdicts and model files to
     /// the last bit. What needs single recordings again ends with [`Error::Fold`]: figures,
-    /// and `fit` where runs differ. The notions phase-plane and
-    /// exact ask the points ([`conform_elsewhere`](crate::fleet::conform_elsewhere)).
+    /// and `fit` where runs differ.
     ///
     /// # Errors
     ///
