@@ -13,7 +13,6 @@ from . import _reachtube
 from ._arrays import Array, batch, finite, numbers, whole
 from ._files import write_new
 from ._progress import Progress, shown
-from ._renamed import renamed
 from ._robot import Robot, native_of
 from .errors import ReachtubeError, SettingError
 
@@ -169,7 +168,6 @@ def _parsed(text: str) -> Abstraction:
     return Abstraction(_reachtube.Abstraction.parse(text, "bytes"))
 
 
-@renamed(model="paper_model")
 def abstract(
     robot: Robot,
     *,

@@ -18,7 +18,6 @@ from ._logs import Logs, native_of_logs
 from ._model import Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
-from ._renamed import renamed
 from ._robot import Robot
 from ._settings import Data, Group, Notion, Torque, among, of_conformance
 from .errors import ReachtubeWarning, SettingError
@@ -26,7 +25,6 @@ from .errors import ReachtubeWarning, SettingError
 log = logging.getLogger("reachtube")
 
 
-@renamed(model="paper_model")
 def conform(
     robot: Robot | Abstraction,
     data: Data | Logs,
@@ -44,7 +42,7 @@ def conform(
     states: Literal["all", "positions"] = "all",
     initial_limit: Literal["none", "positions", "states"] = "none",
     stiction: bool = False,
-    weights: Literal["unit", "spread"] | npt.ArrayLike = "unit",
+    weights: Literal["unit"] | npt.ArrayLike = "unit",
     noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
     sensor_noise: npt.ArrayLike | None = None,
     nominal: Literal["mean", "own"] = "mean",
@@ -98,7 +96,7 @@ def conform(
         Widen U by the dry friction that is possible where joints may come to rest, for other
         motions under the same motor torque.
     weights
-        Weights of the states in the cost: 1, the reciprocal of the spread, or 2 or 2n numbers.
+        Weights of the states in the cost: 1, or 2 or 2n numbers.
     noise
         Measurement noise V: none, fitted to the recordings, or its radii, 2 or 2n numbers, rad and
         rad/s.

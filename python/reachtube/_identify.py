@@ -15,7 +15,6 @@ from ._files import write_new
 from ._progress import Progress, shown
 from ._record import Record
 from ._recordings import Run
-from ._renamed import renamed
 from ._robot import Robot, native_of
 from .errors import ReachtubeError, ReachtubeWarning, SettingError
 
@@ -161,7 +160,6 @@ def _recorded(logs: Logs) -> tuple[list[str], list[tuple[_reachtube.Run, int | N
     return paths, [(item._native, item.order) for item in items if isinstance(item, Run)]
 
 
-@renamed(link_torque="torque=\"link\"")
 def identify(
     robot: Robot,
     *,

@@ -21,7 +21,6 @@ from ._jobs import Job, Part, fleet_of, fold_of, on_dask
 from ._manifest import Recording, in_order, of_robots, read_manifest, write_manifest
 from ._model import Model, text_of
 from ._progress import Progress, shown
-from ._renamed import renamed
 from ._robot import Robot
 from ._settings import Group, Notion, Torque, among, differing, of_conformance
 from .errors import ReachtubeError
@@ -80,7 +79,6 @@ def _folded(
         return whole.to_bytes()
 
 
-@renamed(model="paper_model")
 def conform(
     robot: Robot | Abstraction,
     manifest: str | PathLike[str],

@@ -177,7 +177,7 @@ def test_settings_reach_the_product(robot: rt.Robot, data: rt.Recordings) -> Non
             centre="zero",
             disturbance="constant",
             noise=[1e-4, 1e-3],
-            weights="spread",
+            weights=[1.0, 0.5],
             until=0.1,
         )
     settings = found.settings

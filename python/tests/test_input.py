@@ -42,10 +42,6 @@ def test_settings_of_wrong_types_are_named(
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda data: conform(None, data, model=2), r"conform\(\): model is now paper_model"),
-        (lambda data: rt.abstract(None, model=2), r"abstract\(\): model is now paper_model"),
-        (lambda data: rt.fleet.conform(None, "m", model=2), "model is now paper_model"),
-        (lambda data: rt.identify(None, link_torque=True), 'link_torque is now torque="link"'),
     ],
 )
 def test_old_names_of_arguments_fail_with_the_new_one(

@@ -15,14 +15,6 @@ pub(crate) enum Error {
     /// The command line is wrong, or asks for help or the version.
     #[error("{}", usage_words(.0))]
     Usage(clap::Error),
-    /// An option has another name now.
-    #[error("--{old} is now --{new}")]
-    Renamed {
-        /// The name it had, without dashes.
-        old: String,
-        /// The name it has, without dashes, with its value if the old option had none.
-        new: &'static str,
-    },
     /// A key of the settings was given as an option.
     #[error(
         "--{key} is no option, but {key} is a key of the settings: write it to a file, and give \
@@ -39,18 +31,6 @@ pub(crate) enum Error {
         path: PathBuf,
         /// What is wrong, with line and column.
         message: String,
-    },
-    /// A key of a settings file is wrong.
-    #[error("{}:{line}: {key}: {problem}", path.display())]
-    SettingsKey {
-        /// The file.
-        path: PathBuf,
-        /// Line in the file, from 1.
-        line: usize,
-        /// The key.
-        key: String,
-        /// What is wrong, and what to do.
-        problem: String,
     },
     /// The result could not be printed.
     #[error(
@@ -241,7 +221,7 @@ impl Error {
     /// Returns what the error is about, as `--json` prints it.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
-            Self::Usage(_) | Self::Renamed { .. } | Self::InSettings { .. } => "usage",
+            Self::Usage(_) | Self::InSettings { .. } => "usage",
             Self::Output(_) => "file",
             Self::Refused { .. } | Self::Sample { .. } => "recordings",
             Self::Pipeline(error) => match **error {

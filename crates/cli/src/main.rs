@@ -17,11 +17,10 @@ mod outcome;
 mod output;
 mod progress;
 mod reference;
-mod renamed;
 mod report_files;
-mod settings_file;
 mod table;
 mod understood;
+mod usage;
 mod virtual_robot_arguments;
 
 use std::process::ExitCode;
@@ -39,7 +38,7 @@ const LEFT_OPEN: u8 = 3;
 
 fn main() -> ExitCode {
     let json = std::env::args().any(|argument| argument == "--json");
-    let outcome = settings_file::parse(std::env::args_os().collect()).and_then(|arguments| {
+    let outcome = usage::parse(&std::env::args_os().collect::<Vec<_>>()).and_then(|arguments| {
         arguments.global.install();
         cli::run(&arguments)
     });

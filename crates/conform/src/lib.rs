@@ -37,7 +37,6 @@ mod search;
 mod sets;
 mod stiction;
 pub mod tube;
-mod weights;
 
 pub use answer::Answer;
 pub use carry_over::carry_over;

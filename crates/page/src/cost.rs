@@ -5,7 +5,7 @@ use reachtube_conform::next_motion::LeftOut;
 use reachtube_conform::settings::Weights;
 
 use crate::chart::{Chart, Series};
-use crate::suite_figure::{Band, Nominal, RunTrace, SuiteFigure};
+use crate::suite_figure::{Band, RunTrace, SuiteFigure};
 use crate::text_table::{TextTable, change};
 use reachtube_scalar::number::{at_least, four_decimals};
 
@@ -36,7 +36,6 @@ pub(super) fn sum_unit(model: &Model) -> String {
             format!("[({} + {})]", kinds[0].position_unit(), kinds[0].velocity_unit())
         }
         Weights::Unit => "[SI units, added]".into(),
-        Weights::Spread => "[parts of the spread, added]".into(),
         Weights::Given(_) => "[weighted SI units, added]".into(),
     }
 }
@@ -85,9 +84,8 @@ fn edge(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 /// Returns the share of each state in the weighted widths of the bands over the drawn suites.
 fn by_joint(model: &Model, figures: &[SuiteFigure]) -> TextTable {
     let n = model.joints();
-    let shares: Vec<f64> = (0..2 * n)
-        .map(|state| weight(model, figures, state) * widths(model, figures, state))
-        .collect();
+    let shares: Vec<f64> =
+        (0..2 * n).map(|state| weight(model, state) * widths(model, figures, state)).collect();
     let all: f64 = shares.iter().sum();
     let percent = |share: f64| format!("{:.1} %", 100.0 * share / all);
     let row = |joint: usize| {
@@ -103,30 +101,11 @@ fn by_joint(model: &Model, figures: &[SuiteFigure]) -> TextTable {
 }
 
 /// Returns the weight of a state in the cost.
-fn weight(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {
+fn weight(model: &Model, state: usize) -> f64 {
     match &model.settings.weights {
         Weights::Unit => 1.0,
         Weights::Given(weights) => weights[state],
-        Weights::Spread => {
-            let largest = figures.iter().map(|figure| largest_deviation(figure, state));
-            let largest = largest.fold(0.0, f64::max);
-            if largest > 0.0 { 1.0 / largest } else { 1.0 }
-        }
     }
-}
-
-/// Returns the largest deviation of a recording from the nominal motion at the samples.
-fn largest_deviation(figure: &SuiteFigure, state: usize) -> f64 {
-    let nominal = match &figure.nominal {
-        Nominal::Shared(rows) => rows[state].as_slice(),
-        _ => &[],
-    };
-    let range = figure.inner.iter().flat_map(|band| [&band.lower[state], &band.upper[state]]);
-    let lines = figure.runs.iter().map(|run| &run.states[state]).chain(range);
-    let deviation = |(k, x): (usize, &f64)| (x - nominal.get(k).copied().unwrap_or(0.0)).abs();
-    lines
-        .flat_map(|line| line.iter().take(figure.times.len()).enumerate().map(deviation))
-        .fold(0.0, f64::max)
 }
 
 fn widths(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {

@@ -60,7 +60,7 @@ pub use reachtube_conform::data::Side;
 pub use skeleton::{document, long_table, section};
 pub use sources::Sources;
 pub use stop_page::{STOP_PAGE_FILE, StopPage, write_stop_html};
-pub use suite_figure::{Band, Nominal, RunGauge, RunTrace, SuiteFigure, TightSpot, View};
+pub use suite_figure::{Band, Nominal, RunTrace, SuiteFigure, View};
 pub use suites::suite_figures;
 pub use text_table::TextTable;
 pub use verify_page::{VERIFY_PAGE_FILE, VerifyPage, write_verify_html};

@@ -42,7 +42,6 @@ pub use compared::HeldOut;
 pub use cut::Cut;
 pub use error::Error;
 pub use horizon::HorizonWidths;
-pub use joint_row::JointRow;
 pub use live::LiveMonitor;
 pub use prepared::{check_job, prepared};
 pub use scenario_job::{ScenarioJob, Verified};

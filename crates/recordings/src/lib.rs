@@ -72,15 +72,15 @@ pub use notes::{copies_note, run_notes};
 pub use pattern::matching;
 pub use preparation::Preparation;
 pub use reading::{
-    AngleUnit, ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, TimeUnit, Understood,
-    csv_files, group_files, parse_csv, read_csv, read_logged,
+    ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, Understood, csv_files,
+    group_files, parse_csv, read_csv, read_logged,
 };
-pub use refusal::{DefectPlace, Refusal};
+pub use refusal::Refusal;
 pub use resample::{EvenSamples, Sample};
-pub use run::{Run, RunError, column_names};
+pub use run::{Run, column_names};
 pub use sample_error::SampleError;
 pub use sensor_noise::noise_deviations;
 pub use source::{ReadOptions, RunSource, SuiteEntry};
-pub use state::{State, StateKind, StateNameError};
+pub use state::State;
 pub use torque::Torque;
 pub use units::{check_limits, integral_gap};

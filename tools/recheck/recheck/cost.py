@@ -166,8 +166,6 @@ class Costs:
         kind, n = self.model.settings.get("weights", "unit"), self.model.joints
         if kind == "unit":
             weights = [arb(1)] * (2 * n)
-        elif kind == "spread":
-            weights = [arb(1) / (x if x > 0.0 else 1.0) for x in self.largest]
         else:
             weights = [arb(float(x)) for x in kind["given"]]
         of_sets = arb_mat(1, 2 * n, weights) * self.sums

@@ -24,14 +24,12 @@ mod overwrite;
 mod prismatic;
 mod provenance;
 mod reach;
-mod renamed;
 mod reproduce;
 #[path = "../../../logs/tests/logs/support.rs"]
 mod robot_logs;
 mod robots;
 mod schema;
 mod schunk;
-mod settings;
 mod short;
 mod stop;
 mod terminal;

@@ -125,11 +125,11 @@ fn numbers_that_do_not_fit() {
     lab.conform("--weights 0,1").fails_with(&["weight 1 is 0", "between 1e-9 and 1e9"]);
     lab.conform("--weights 1,2,3").fails_with(&[
         "--weights: 3 values given",
-        "unit, spread, 2 numbers",
+        "unit, 2 numbers",
         "or 4",
     ]);
-    lab.conform("--weights Spread")
-        .fails_with(&["--weights: \"Spread\" is not a number", "unit, spread"]);
+    lab.conform("--weights Unit")
+        .fails_with(&["--weights: \"Unit\" is not a number", "unit, 2 numbers"]);
     lab.conform("--noise -1,0").fails_with(&["noise radius 1 is -1", "between 0 and 1e9"]);
     lab.conform("--noise NaN,0").fails_with(&["noise radius 1 is NaN"]);
     lab.conform("--expansion 1,2,3").fails_with(&[
@@ -171,7 +171,6 @@ fn every_setting_gives_a_model_that_its_own_check_accepts() {
         "--centre origin",
         "--centre zero",
         "--states positions",
-        "--weights spread",
         "--weights 1,0.1",
         "--noise fitted",
         "--noise 0.001,0.01",
@@ -216,4 +215,14 @@ fn suites_of_different_rates_go_together() {
     let model = lab.conform("--json --out model.json").exits(0).json();
     assert_eq!(model["proof"]["rows"], 4 * (SAMPLES + SAMPLES.div_ceil(2)));
     lab.check("").exits(0);
+}
+
+#[test]
+fn a_choice_that_is_no_option_is_said_to_be_a_key() {
+    let lab = Lab::new();
+    let words = "--cut-off is no option, but cut-off is a key of the settings";
+    lab.run("model --robot arm.toml --cut-off 3 --out out").fails_with(&[words]);
+    // Other commands have no such choice, or have it as an option.
+    let run = lab.run("reach --largest-ratio 3").exits(2);
+    assert!(run.stderr.contains("unexpected argument '--largest-ratio'"), "{}", run.stderr);
 }

@@ -24,7 +24,7 @@ fn models_fit_the_schema() {
     for options in [
         "",
         "--noise fitted --weights 1,0.5",
-        "--noise 0.001,0.01 --until 0.2 --weights spread",
+        "--noise 0.001,0.01 --until 0.2 --weights 1,0.5",
         "--states positions",
         "--calibrate MB",
         "--notion phase-plane",

@@ -27,13 +27,13 @@ pub enum Keep {
     /// Suites that have a nominal motion of their own.
     #[default]
     Needed,
-    /// All, as figures and explanations need them; up to 256 MiB, beyond which runs are read again.
+    /// All, as figures need them; up to 256 MiB, beyond which runs are read again.
     All,
 }
 
 /// A problem: a model, settings and recordings, which are read once and folded into what the steps
-/// need. [`conform`](crate::conform), [`check`](crate::check()), [`reach`](crate::reach()) and
-/// [`explain`](crate::explain()) take it.
+/// need. [`conform`](crate::conform), [`check`](crate::check()) and [`reach`](crate::reach())
+/// take it.
 ///
 /// # Examples
 ///

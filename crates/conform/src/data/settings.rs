@@ -140,10 +140,18 @@ pub enum Weights {
     /// 1 for each state.
     #[default]
     Unit,
-    /// The reciprocal of the largest deviation of that state in the recordings.
-    Spread,
     /// As given, 2n numbers between 1e-9 and 1e9.
     Given(Vec<f64>),
+}
+
+impl Weights {
+    /// Returns the weight of each state in the cost, s.
+    pub(crate) fn of_states(&self, states: usize) -> Vec<f64> {
+        match self {
+            Self::Unit => vec![1.0; states],
+            Self::Given(weights) => weights.clone(),
+        }
+    }
 }
 
 /// Everything that decides a conformance result besides robot and recordings.

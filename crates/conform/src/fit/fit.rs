@@ -1,8 +1,6 @@
 use rayon::prelude::*;
 
-use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
-use crate::data::settings::Weights;
 use crate::data::setup::{Asked, Parameters, Setup};
 use crate::error::{Error, Result};
 use crate::fit::data::{Data, EQUALLY_WARM};
@@ -17,7 +15,6 @@ use crate::nominal::input_error::InputError;
 use crate::program::layout::Limits;
 use crate::program::program::Program;
 use crate::progress::{Progress, Silent};
-use crate::weights::state_weights;
 
 /// What a fit found.
 #[derive(Debug)]
@@ -62,7 +59,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let found = search(&fit, choice.pull, &choice.dropped)?;
     let steps = if found.steps == 1 { "step" } else { "steps" };
     progress.finished(&format!("the fit took {} {steps}", found.steps));
-    let fitted = basis.with_numbers(&fit, steering, &found.numbers)?;
+    let fitted = basis.with_numbers(steering, &found.numbers)?;
     let costs = [smallest(steering)?, smallest(&fitted)?];
     let left_out = Some(LeftOutMotions::from(&choice));
     let mut record = record(&fit, choice, Some(&found.numbers), costs)?;
@@ -70,7 +67,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     // The numbers go to the model that was asked for, with all motions.
     let problem = match basis.other {
         None => fitted,
-        Some(_) => basis.with_numbers(&fit, problem, &found.numbers)?,
+        Some(_) => basis.with_numbers(problem, &found.numbers)?,
     };
     Ok(Fitted { problem, record, left_out })
 }
@@ -93,7 +90,7 @@ pub(crate) fn fitted_setup(
     let parameters = basis.parameters(basis.steering().setup())?;
     let fit = basis.task(&*parameters, progress)?;
     let found = search(&fit, pull, &[])?;
-    Ok(basis.with_numbers(&fit, problem, &found.numbers)?.setup().clone())
+    Ok(basis.with_numbers(problem, &found.numbers)?.setup().clone())
 }
 
 /// What a fit of a problem is based on.
@@ -157,13 +154,11 @@ impl<'a> Basis<'a> {
     ) -> Result<FitTask<'b>> {
         let (steering, data) = (self.steering(), &self.data);
         let settings = steering.settings();
-        let envelopes: Vec<&Envelope> =
-            steering.deviations()?.iter().map(|own| &own.envelope).collect();
         Ok(FitTask {
             parameters,
             data,
             stride: data.stride(),
-            weights: state_weights(&settings.weights, &envelopes, steering.shape().states),
+            weights: settings.weights.of_states(steering.shape().states),
             settings,
             limits: steering.limits(),
             progress,
@@ -171,14 +166,11 @@ impl<'a> Basis<'a> {
     }
 
     /// Returns a problem whose model has the numbers that were found.
-    fn with_numbers(&self, fit: &FitTask, problem: &Problem, numbers: &[f64]) -> Result<Problem> {
+    fn with_numbers(&self, problem: &Problem, numbers: &[f64]) -> Result<Problem> {
         let parameters = self.parameters(problem.setup())?;
-        let mut setup = parameters.apply(numbers)?;
+        let setup = parameters.apply(numbers)?;
         let refused = |error| Error::Fit(format!("{error}; give a larger weight to the pull"));
         parameters.check(&setup).map_err(refused)?;
-        if setup.settings.weights == Weights::Spread {
-            setup.settings.weights = Weights::Given(fit.weights.clone());
-        }
         Ok(problem.with_setup(setup))
     }
 }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
-use crate::data::settings::{InitialLimit, Weights};
+use crate::data::settings::InitialLimit;
 use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::motions::Motions;
@@ -299,8 +299,6 @@ fn unmet(problem: &Problem) -> Option<&'static str> {
     let ends_alone = || Motions::new(problem.recordings()).longest_is_one(problem.recordings());
     if problem.dynamics().linear_system().is_none() {
         Some("its theorem is proved for convex programs, and this model is not linear")
-    } else if settings.weights == Weights::Spread {
-        Some("its theorem asks for a fixed cost, and these weights depend on the recordings")
     } else if is_limited {
         Some(
             "its theorem asks for fixed limits, and the limit by sensor noise was estimated from \

@@ -1,11 +1,9 @@
 //! The program of a linear model and its recordings.
 
-use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::program::block::Block;
 use crate::program::program::Program;
-use crate::weights::state_weights;
 
 impl<'a> Program<'a> {
     /// Returns the program of a linear model and its recordings.
@@ -16,8 +14,7 @@ impl<'a> Program<'a> {
     pub(crate) fn of_problem(problem: &'a Problem) -> Result<Self> {
         let (settings, shape) = (problem.settings(), problem.shape());
         let (grids, deviations) = (problem.grids()?, problem.deviations()?);
-        let envelopes: Vec<&Envelope> = deviations.iter().map(|d| &d.envelope).collect();
-        let weights = state_weights(&settings.weights, &envelopes, shape.states);
+        let weights = settings.weights.of_states(shape.states);
         let blocks = Block::of_grids(grids.as_slice(), deviations);
         Ok(Self::new((settings, shape), &weights, blocks).with_limits(problem.limits()))
     }

@@ -60,8 +60,6 @@ impl Remedy {
     #[must_use]
     pub(crate) fn written_for(&self, front_end: FrontEnd) -> String {
         let Self { setting, value, effect } = self;
-        // Files of earlier versions have the name that the option had then.
-        let setting = if setting == "model" { "paper-model" } else { setting };
         let own = front_end.name_of(setting);
         if own != setting {
             return Self::new(own, value).written_for(front_end);

@@ -8,12 +8,10 @@
 use rayon::prelude::*;
 
 use crate::data::case::Case;
-use crate::data::envelope::Envelope;
 use crate::data::problem::Problem;
-use crate::data::settings::Weights;
 use crate::data::side::Side;
 use crate::error::Result;
-use crate::nominal::simulate::{nominal, runs_away};
+use crate::nominal::simulate::runs_away;
 use crate::program::block::Block;
 use crate::program::program::Program;
 use crate::sets::UncertaintySets;
@@ -22,7 +20,6 @@ use crate::tube::plant::Round;
 use crate::tube::sensitivity::Sensitivity;
 use crate::tube::state::SearchState;
 use crate::tube::worst_case::Correction;
-use crate::weights::state_weights;
 
 /// Linearises the model along every case, and poses the program, with one block per case.
 ///
@@ -53,28 +50,13 @@ pub(super) fn round<'a>(problem: &'a Problem, state: &mut SearchState) -> Result
         let envelope = &mut blocks[margin.case].envelope;
         envelope.widen(margin.sample, margin.state, margin.side, margin.margin);
     }
+    let (settings, shape) = (problem.settings(), problem.shape());
     let mut program =
-        Program::new((problem.settings(), problem.shape()), &weights(problem)?, blocks)
+        Program::new((settings, shape), &settings.weights.of_states(shape.states), blocks)
             .with_centre_bounds(state.centre_bounds())
             .with_limits(problem.limits());
     program.cuts = cuts;
     Ok(Round { rows: program.first_rows(), program, runs_away })
-}
-
-/// Returns the weights of the states, s, by the deviations from the nominal motions.
-pub(super) fn weights(problem: &Problem) -> Result<Vec<f64>> {
-    let deviation = |case: &Case| {
-        let nominal = nominal(problem.nonlinear(), case)?;
-        let states = 2 * case.joints();
-        let off = |k: usize, i: usize, x: f64| x - nominal[k * states + i];
-        Ok(case.measured.map(off, off))
-    };
-    let weights = &problem.settings().weights;
-    let envelopes: Vec<Envelope> = match weights {
-        Weights::Spread => problem.cases()?.iter().map(deviation).collect::<Result<_>>()?,
-        Weights::Unit | Weights::Given(_) => Vec::new(),
-    };
-    Ok(state_weights(weights, &envelopes.iter().collect::<Vec<_>>(), problem.shape().states))
 }
 
 fn sensitivities(

@@ -14,7 +14,7 @@ use crate::program::costs::{SampleTimes, distinct_shares};
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::{Effort, attempt, furthest};
 use crate::tube::judged::{At, Judged};
-use crate::tube::linearised::{round, weights};
+use crate::tube::linearised::round;
 use crate::tube::plant::{Costs, Plant, Round, Slice, Watch};
 use crate::tube::state::SearchState;
 use crate::tube::strand::Strand;
@@ -96,7 +96,7 @@ impl Plant for Polynomial<'_> {
     }
 
     fn costs(&self, tube: &Tube) -> Result<Costs> {
-        let weights = weights(self.problem)?;
+        let weights = self.problem.settings().weights.of_states(self.problem.shape().states);
         let times = tube.strands.iter().map(|strand| strand.times.times());
         let (shares, SampleTimes { parts, step }) =
             (distinct_shares(times.clone()), SampleTimes::new(times));

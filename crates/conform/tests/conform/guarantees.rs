@@ -3,7 +3,7 @@
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::next_motion::TrustKind;
 use reachtube_conform::result::Code;
-use reachtube_conform::settings::{InitialLimit, NominalStart, Weights};
+use reachtube_conform::settings::{InitialLimit, NominalStart};
 use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent};
 use reachtube_recordings::{MemoryRuns, Preparation, Run, Torque};
 use reachtube_robot::Robot;
@@ -157,7 +157,6 @@ fn a_bound_whose_conditions_are_not_met_is_an_indication() {
         (given, TrustKind::Guarantee, "scenario bound"),
         (own(), TrustKind::Indication, "was estimated from the recordings"),
         (Settings { abstraction: nonlinear, ..plain() }, TrustKind::Indication, "is not linear"),
-        (Settings { weights: Weights::Spread, ..plain() }, TrustKind::Indication, "fixed cost"),
         (
             Settings { initial_limit: InitialLimit::States, ..plain() },
             TrustKind::Indication,

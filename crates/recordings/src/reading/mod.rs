@@ -32,4 +32,3 @@ pub use log_settings::{LogSettings, LogTime};
 pub use options::LoggedOptions;
 pub use settings::ColumnSettings;
 pub use understood::Understood;
-pub use unit::{AngleUnit, TimeUnit};

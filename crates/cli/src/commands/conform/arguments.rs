@@ -86,9 +86,6 @@ pub(crate) struct Arguments {
         conflicts_with_all = ["robot", "lock", "expansion", "paper_model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
-    /// TOML file with options of this command; paths relative to it
-    #[arg(long, value_name = "FILE")]
-    pub settings: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArguments,
     /// Cut recordings, or logs as they are, into windows of this length, above 0 s, each a suite of

@@ -57,14 +57,14 @@ pub(crate) struct SetArguments {
     /// or slip at other times
     #[arg(long, hide_short_help = true, help_heading = "Sets")]
     pub stiction: bool,
-    /// Weights of the states in the cost: 1, 1 over the largest deviation, or 2 or 2n numbers
-    /// between 1e-9 and 1e9, positions first
+    /// Weights of the states in the cost: 1, or 2 or 2n numbers between 1e-9 and 1e9, positions
+    /// first
     #[arg(
         long,
         hide_short_help = true,
         help_heading = "Sets",
         default_value = "unit",
-        value_name = "unit|spread|W,W,..",
+        value_name = "unit|W,W,..",
         allow_hyphen_values = true
     )]
     pub weights: String,
@@ -148,8 +148,7 @@ impl SetArguments {
             stiction: self.stiction,
             weights: match self.weights.as_str() {
                 "unit" => Weights::Unit,
-                "spread" => Weights::Spread,
-                list => Weights::Given(numbers("--weights", "unit, spread, ", list, joints)?),
+                list => Weights::Given(numbers("--weights", "unit, ", list, joints)?),
             },
             noise: match self.noise.as_str() {
                 "none" => Noise::None,

@@ -174,14 +174,8 @@ pub(super) const CASES: &[Case] = &[
     Case::refused(
         "a settings file that is no TOML",
         |lab| lab.write("s.toml", "x = ["),
-        "conform --settings s.toml",
+        "identify --robot arm.toml --settings s.toml",
         &["s.toml: TOML parse error at line 1"],
-    ),
-    Case::refused(
-        "an unknown key of the settings",
-        |lab| lab.write("s.toml", "robot = \"arm.toml\"\ndate = 1\n"),
-        "conform --settings s.toml",
-        &["s.toml:2: date: there is no such option"],
     ),
     Case::refused(
         "an unknown key of identify's settings",
