@@ -163,9 +163,9 @@ def _recorded(logs: Logs) -> tuple[list[str], list[tuple[_reachtube.Run, int | N
 def identify(
     robot: Robot,
     *,
-    dynamic: Logs = (),
+    excitation: Logs = (),
     rest: Logs = (),
-    friction: Logs = (),
+    one_joint: Logs = (),
     validate: Logs = (),
     settings: str | PathLike[str] | None = None,
     prepare: dict[str, Any] | None = None,
@@ -179,11 +179,11 @@ def identify(
     ----------
     robot
         Its geometry, and the prior of its links.
-    dynamic
+    excitation
         Recordings of exciting motions: runs, or paths of CSV files or folders of them.
     rest
         Recordings of poses at rest, likewise.
-    friction
+    one_joint
         Recordings of slow motions of single joints, likewise.
     validate
         Recordings of motions that are held out, likewise.
@@ -231,7 +231,7 @@ def identify(
     given = json_of("settings", {"prepare": dict(prepare or {}), "model": own})
     here = Path.cwd()
     recorded = []
-    for logs in (rest, friction, dynamic, validate):
+    for logs in (rest, one_joint, excitation, validate):
         paths, runs = _recorded(logs)
         recorded.append(([str(here / path) for path in paths], runs))
     with shown(progress, "identify") as tell:

@@ -85,11 +85,11 @@ pub(crate) fn identify(
         let mut settings = settings(toml.as_deref(), &given)?;
         let files = tempfile::tempdir()
             .map_err(|error| Failure::Other(format!("no temporary folder: {error}")))?;
-        let IdentifySettings { rest, friction, dynamic, validate, .. } = &mut settings;
+        let IdentifySettings { rest, one_joint, excitation, validate, .. } = &mut settings;
         let uses = [
-            (rest, "static"),
-            (friction, "friction"),
-            (dynamic, "dynamic"),
+            (rest, "rest"),
+            (one_joint, "one_joint"),
+            (excitation, "excitation"),
             (validate, "validate"),
         ];
         for ((wanted, name), (paths, runs)) in uses.into_iter().zip(recorded) {

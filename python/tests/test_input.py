@@ -58,7 +58,7 @@ def test_numbers_of_numpy_are_numbers(robot: rt.Robot, data: rt.Recordings) -> N
     assert rt.Robot.load("lwa4p", lock={"joint6": np.float64(0.5)}).joints == 5
     assert conform(robot, data, stiction=np.bool_(False)) == conform(robot, data)
     with pytest.raises(rt.ReachtubeError, match="low-pass of 5 Hz"):
-        rt.identify(robot, dynamic=data[0], prepare={"cut_off": np.float32(5.0)})
+        rt.identify(robot, excitation=data[0], prepare={"cut_off": np.float32(5.0)})
 
 
 def test_what_users_write_is_taken(model: rt.Model, data: rt.Recordings) -> None:
@@ -83,9 +83,12 @@ def test_what_users_write_is_taken(model: rt.Model, data: rt.Recordings) -> None
         (lambda data: rt.reach(None, data), "the model is of type NoneType"),
         (lambda data: rt.abstract("lwa4p"), "the robot is of type str"),
         (lambda data: rt.excite("lwa4p"), "the robot is of type str"),
-        (lambda data: rt.identify("lwa4p", dynamic=data[0]), "the robot is of type str"),
+        (lambda data: rt.identify("lwa4p", excitation=data[0]), "the robot is of type str"),
         (lambda data: rt.fleet.conform("lwa4p", "m.parquet", torque="motor"), "type str"),
-        (lambda data: rt.identify(rt.Robot.lwa4p(), dynamic=3), "of type int; give runs or paths"),
+        (
+            lambda data: rt.identify(rt.Robot.lwa4p(), excitation=3),
+            "of type int; give runs or paths",
+        ),
         (lambda data: rt.identify(rt.Robot.lwa4p(), prepare=[1]), r"prepare is \[1\]"),
         (lambda data: rt.Robot.load("lwa4p", lock=["joint1"]), "give the positions of joints"),
         (lambda data: rt.Robot.from_dict(3), "the description is of type int"),

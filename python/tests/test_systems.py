@@ -247,7 +247,7 @@ def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path:
         warnings.simplefilter("ignore")
         # The paper's links are combinations that no bodies have.
         model = {"windows": [0.5], "physical": False}
-        result = rt.identify(robot, dynamic=rt.Run(t, q, qd, tau), model=model)
+        result = rt.identify(robot, excitation=rt.Run(t, q, qd, tau), model=model)
     other = result.robot
     predicted = other.rnea(q, qd, qdd) + other.viscous_friction(qd) + other.coulomb_friction(q, qd)
     moving = np.abs(qd) > 0.05
@@ -260,7 +260,7 @@ def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path:
     (tmp_path / "run.csv").write_text("\n".join(lines))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        by_file = rt.identify(robot, dynamic=tmp_path / "run.csv", model=model)
+        by_file = rt.identify(robot, excitation=tmp_path / "run.csv", model=model)
     ours, theirs = [identified.to_dict() for identified in (other, by_file.robot)]
     # Digests are of the text of a file.
     assert ours.pop("identified_from") != theirs.pop("identified_from")
@@ -282,7 +282,7 @@ def test_identification_recovers_the_robot_that_moved(robot: rt.Robot, tmp_path:
     with pytest.raises(rt.ReachtubeError, match="not read from a URDF"):
         result.save_urdf(robot, tmp_path / "arm.urdf")
     with pytest.raises(rt.SettingError, match="cutoff"):
-        rt.identify(robot, dynamic=rt.Run(t, q, qd, tau), prepare={"cutoff": 5.0})
+        rt.identify(robot, excitation=rt.Run(t, q, qd, tau), prepare={"cutoff": 5.0})
 
 
 def test_a_defect_of_a_run_in_memory_names_the_run() -> None:
@@ -291,5 +291,5 @@ def test_a_defect_of_a_run_in_memory_names_the_run() -> None:
     t[500:] += 3.0
     q, qd = (np.tile(wave(t)[:, None], robot.joints) for wave in (np.sin, np.cos))
     with pytest.raises(rt.DefectsError, match=r"^dynamic_1:502: there is a gap") as refused:
-        rt.identify(robot, dynamic=rt.Run(t, q, qd, np.zeros_like(q)))
+        rt.identify(robot, excitation=rt.Run(t, q, qd, np.zeros_like(q)))
     assert refused.value.defects[0].file == "dynamic_1"

@@ -39,7 +39,7 @@ Examples:
       summarise a data set
   reachtube convert --robot arm.urdf --data run.mcap --marker /run --out recordings
       cut a robot's log into recordings
-  reachtube identify --robot arm.urdf --dynamic a.csv b.csv --validate c.csv --out arm.toml
+  reachtube identify --robot arm.urdf --excitation a.csv b.csv --validate c.csv --out arm.toml
       identify gravity, friction and inertia
   reachtube abstract --robot lwa4p --paper-model 2 --order 5
       make a polynomial model of the forward dynamics

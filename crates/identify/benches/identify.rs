@@ -11,9 +11,9 @@ use std::path::Path;
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/ur10e");
 
 const SETTINGS: &str = r#"
-    static = ["static"]
-    friction = ["friction"]
-    dynamic = ["excitation"]
+    rest = ["static"]
+    one_joint = ["friction"]
+    excitation = ["excitation"]
     validate = ["loaded", "repeated"]
     prepare.cut_off = 6.0
 "#;

@@ -17,7 +17,7 @@ pub enum Error {
     /// The settings name no recordings of exciting motions.
     #[error(
         "the inertial parameters need recordings of exciting motions, but none is named; name some \
-         with --dynamic or dynamic = [..]"
+         with --excitation or excitation = [..]"
     )]
     NoExcitingMotions,
     /// A setting that must be a positive number is not.
@@ -100,14 +100,14 @@ pub enum Error {
     /// Separate gravity moments are requested, but nothing determines them.
     #[error(
         "model.separate_gravity = true needs recordings for a gravity fit; name poses at rest with \
-         --static or slow motions with --friction, or remove the setting"
+         --rest or slow motions with --one-joint, or remove the setting"
     )]
     SeparateGravity,
     /// The static recordings hold no pose.
     #[error(
         "the static recordings have no pose: in none of them does every joint stay below \
          model.rest_speed = {rest_speed} rad/s for {shortest} s; record rests, raise \
-         model.rest_speed, or name motions with --friction or --dynamic"
+         model.rest_speed, or name motions with --one-joint or --excitation"
     )]
     NoPose {
         /// Speed up to which the robot counts as at rest \[rad/s\].
@@ -160,7 +160,7 @@ pub enum Error {
     /// All joints stand still in the recordings for the inertial parameters.
     #[error(
         "no joint moves in the recordings for the inertial parameters; name recordings of motions \
-         with --dynamic or dynamic = [..]"
+         with --excitation or excitation = [..]"
     )]
     NoMotion,
     /// The recordings do not determine all parameters, and no prior may decide.

@@ -95,7 +95,7 @@ fn impossible(error: Error, implausible: &[Implausible]) -> Error {
 fn with_cause(error: Error, robot: &Robot, inputs: &Inputs) -> Error {
     match error {
         Error::NoPhysicalLinks { .. } if inputs.compensated => {
-            let cause = input_unit_warning(robot, &inputs.dynamic, &inputs.sampling);
+            let cause = input_unit_warning(robot, &inputs.excitation, &inputs.sampling);
             Error::NoPhysicalLinks { cause }
         }
         other => other,
@@ -131,7 +131,7 @@ fn fit_links(
         cubic: model.cubic.unwrap_or(known_count > 0),
     };
     let rest: &[PreparedLog] = if model.separate_gravity { &[] } else { &inputs.rest };
-    let logs = [&inputs.dynamic[..], rest];
+    let logs = [&inputs.excitation[..], rest];
     let fit = |friction: Vec<FrictionDescription>| -> Result<FittedLinks> {
         let known = with_friction(load, &friction)?;
         let fit = fit_inertia(robot, &known, logs, kept, &inputs.sampling, model, columns);
@@ -178,7 +178,7 @@ fn check(
     friction: &[FrictionDescription],
     inputs: &Inputs,
 ) -> Plausibility {
-    let (logs, sampling) = (&inputs.dynamic, &inputs.sampling);
+    let (logs, sampling) = (&inputs.excitation, &inputs.sampling);
     let known = KnownTorque::Friction(known);
     let samples = &Samples::in_motion(robot, &fit.columns, logs, sampling, &known);
     let likelihood = GainLikelihood::new(samples, &fit.joints);

@@ -160,7 +160,7 @@ fn add_friction(
         let logs = inputs.friction.iter().filter(|_| known.is_some());
         let is_fitted =
             inertia.columns.contains(&Parameter { joint: j, kind: ParameterKind::Viscous1 });
-        let logs = logs.chain(inputs.dynamic.iter().filter(|_| is_fitted));
+        let logs = logs.chain(inputs.excitation.iter().filter(|_| is_fitted));
         let all = logs.flat_map(|log| log.qd.iter().skip(j).step_by(log.joints));
         let range = all.fold([0.0f64; 2], |[low, high], qd| [low.min(*qd), high.max(*qd)]);
         joint.friction.fitted_velocities = (range != [0.0; 2]).then_some(range);

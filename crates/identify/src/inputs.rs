@@ -41,7 +41,7 @@ pub(crate) struct Inputs {
     /// Slow motions of one joint at a time.
     pub friction: Vec<PreparedLog>,
     /// Exciting motions.
-    pub dynamic: Vec<PreparedLog>,
+    pub excitation: Vec<PreparedLog>,
     /// Validation recordings.
     validate: Vec<PreparedLog>,
     /// The rules for taking samples.
@@ -64,8 +64,9 @@ impl Inputs {
     ///
     /// The controllers of `robot` compensate, if a recording has the input u.
     pub(crate) fn read(robot: &Robot, settings: &IdentifySettings, folder: &Path) -> Result<Self> {
-        let IdentifySettings { rest, friction, dynamic, validate, prepare, model, .. } = settings;
-        let groups = [rest, friction, dynamic, validate];
+        let IdentifySettings { rest, one_joint, excitation, validate, prepare, model, .. } =
+            settings;
+        let groups = [rest, one_joint, excitation, validate];
         let sources = groups.map(|entries| sources(entries, folder, robot, prepare)).into_iter();
         let mut sources: Vec<Vec<Source>> = sources.collect::<Result<_>>()?;
         let survey = |source: &Source| Ok(Survey::of(&source.read(robot, prepare)?));
@@ -96,8 +97,8 @@ impl Inputs {
             changes.extend(done.iter().map(|(.., change)| *change));
             logs.push(done.into_iter().map(|(_, log, _)| log).collect::<Vec<PreparedLog>>());
         }
-        let [rest, friction, dynamic, validate] = logs.try_into().expect("four groups");
-        let moving: Vec<&PreparedLog> = friction.iter().chain(&dynamic).collect();
+        let [rest, friction, excitation, validate] = logs.try_into().expect("four groups");
+        let moving: Vec<&PreparedLog> = friction.iter().chain(&excitation).collect();
         let sampling = Sampling {
             rate: SAMPLES_PER_CUT_OFF * cut_off,
             slow: slow_speeds(&moving, robot.joint_count(), model.slow),
@@ -107,13 +108,13 @@ impl Inputs {
         notes.extend(described_changes(samples, &changes, prepare, cut_off));
         notes.extend(too_short(short, cut_off));
         notes.push(described(&sampling, &moving, robot));
-        notes.extend(thinning(&dynamic, strides[2], &sampling));
+        notes.extend(thinning(&excitation, strides[2], &sampling));
         let warnings = velocity_warnings(robot, &all);
-        let compensated = settings.dynamic.iter().any(LogEntry::is_compensated);
+        let compensated = settings.excitation.iter().any(LogEntry::is_compensated);
         Ok(Self {
             rest,
             friction,
-            dynamic,
+            excitation,
             validate,
             sampling,
             compensated,
@@ -127,7 +128,7 @@ impl Inputs {
     /// these or else the exciting motions.
     pub(crate) fn validation(&self) -> (bool, &[PreparedLog]) {
         let held_out = !self.validate.is_empty();
-        (held_out, if held_out { &self.validate } else { &self.dynamic })
+        (held_out, if held_out { &self.validate } else { &self.excitation })
     }
 }
 
@@ -169,8 +170,8 @@ fn stride(surveys: &[Survey]) -> usize {
 }
 
 /// Describes in a sentence which samples of the exciting motions are used, if not all.
-fn thinning(dynamic: &[PreparedLog], stride: usize, sampling: &Sampling) -> Option<String> {
-    let total: usize = dynamic.iter().map(|log| log.len().div_ceil(sampling.stride(log))).sum();
+fn thinning(excitation: &[PreparedLog], stride: usize, sampling: &Sampling) -> Option<String> {
+    let total: usize = excitation.iter().map(|log| log.len().div_ceil(sampling.stride(log))).sum();
     let used = total.div_ceil(most_samples(total));
     (stride > 1 || used > 1).then(|| {
         format!(

@@ -16,9 +16,9 @@
 //! let robot = Robot::load("arm.urdf")?;
 //! let settings = IdentifySettings::from_toml(
 //!     r#"
-//!         static = ["poses"]
-//!         friction = ["slow"]
-//!         dynamic = ["a.csv", "b.csv"]
+//!         rest = ["poses"]
+//!         one_joint = ["slow"]
+//!         excitation = ["a.csv", "b.csv"]
 //!         validate = ["c.csv"]
 //!     "#,
 //!     "settings",

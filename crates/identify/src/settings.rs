@@ -15,8 +15,8 @@ use std::path::Path;
 ///
 /// let settings = IdentifySettings::from_toml(r#"
 ///     robot = "arm.urdf"
-///     static = ["poses"]
-///     dynamic = ["excitation/a.csv", { path = "excitation/b.csv", from = 2.0 }]
+///     rest = ["poses"]
+///     excitation = ["excitation/a.csv", { path = "excitation/b.csv", from = 2.0 }]
 ///     validate = ["excitation/c.csv"]
 ///
 ///     [prepare]
@@ -25,7 +25,7 @@ use std::path::Path;
 ///     [model]
 ///     motor_inertia = false
 /// "#, "arm.toml").unwrap();
-/// assert_eq!(settings.dynamic.len(), 2);
+/// assert_eq!(settings.excitation.len(), 2);
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -33,12 +33,11 @@ pub struct IdentifySettings {
     /// The robot: an embedded name, or the path of a TOML or URDF file.
     pub robot: Option<String>,
     /// Recordings of poses at rest, for gravity.
-    #[serde(rename = "static")]
     pub rest: Vec<LogEntry>,
     /// Recordings of slow motions of one joint at a time, for friction and gravity.
-    pub friction: Vec<LogEntry>,
+    pub one_joint: Vec<LogEntry>,
     /// Recordings of exciting motions, for the inertial parameters.
-    pub dynamic: Vec<LogEntry>,
+    pub excitation: Vec<LogEntry>,
     /// Validation recordings; nothing is fitted to them.
     pub validate: Vec<LogEntry>,
     /// Settings of the preparation of recordings.
@@ -151,11 +150,11 @@ impl IdentifySettings {
     /// [`Error::NoExcitingMotions`], [`Error::GainCount`], [`Error::Gain`],
     /// [`Error::SeparateGravity`] or [`Error::NotPositive`].
     pub(crate) fn validate(&self, joints: usize) -> Result<()> {
-        if self.dynamic.is_empty() {
+        if self.excitation.is_empty() {
             return Err(Error::NoExcitingMotions);
         }
         self.prepare.gain_of_each_joint(joints)?;
-        if self.model.separate_gravity && self.rest.is_empty() && self.friction.is_empty() {
+        if self.model.separate_gravity && self.rest.is_empty() && self.one_joint.is_empty() {
             return Err(Error::SeparateGravity);
         }
         self.model.validate()
@@ -187,7 +186,7 @@ mod tests {
     #[test]
     fn a_syntax_error_names_file_line_and_field() {
         let error = IdentifySettings::from_toml(
-            "dynamic = [\"a.csv\"]\n[model]\nmotorinertia = true\n",
+            "excitation = [\"a.csv\"]\n[model]\nmotorinertia = true\n",
             "s.toml",
         );
         let message = error.unwrap_err().to_string();
@@ -199,19 +198,23 @@ mod tests {
     #[test]
     fn settings_that_do_not_suit_the_robot_are_errors() {
         let given = IdentifySettings {
-            dynamic: vec![std::path::PathBuf::from("a.csv").into()],
+            excitation: vec![std::path::PathBuf::from("a.csv").into()],
             ..Default::default()
         };
         assert!(given.validate(6).is_ok());
         assert!(
-            IdentifySettings::default().validate(6).unwrap_err().to_string().contains("--dynamic")
+            IdentifySettings::default()
+                .validate(6)
+                .unwrap_err()
+                .to_string()
+                .contains("--excitation")
         );
         let mut gains = given.clone();
         gains.prepare.gains = vec![1.0; 5];
         assert!(gains.validate(6).unwrap_err().to_string().contains("each of the 6 joints"));
         let mut separate = given.clone();
         separate.model.separate_gravity = true;
-        assert!(separate.validate(6).unwrap_err().to_string().contains("--static"));
+        assert!(separate.validate(6).unwrap_err().to_string().contains("--rest"));
         separate.rest = vec![std::path::PathBuf::from("poses").into()];
         assert!(separate.validate(6).is_ok());
         let mut windows = given;

@@ -198,8 +198,8 @@ impl Evidence<'_> {
     fn identify(&self, described: &Robot, name: &str) -> Result<(Robot, Vec<Implausible>)> {
         let settings = IdentifySettings {
             rest: self.rest.clone(),
-            friction: self.one_joint.clone(),
-            dynamic: self.motions.iter().map(Recording::entry).collect(),
+            one_joint: self.one_joint.clone(),
+            excitation: self.motions.iter().map(Recording::entry).collect(),
             prepare: PrepareSettings { cut_off: Some(self.cut_off), ..self.settings.clone() },
             model: ModelSettings {
                 motor_inertia: self.torque != Torque::Link,

@@ -166,7 +166,7 @@ fn logs_that_do_not_fit_are_refused() {
 #[test]
 fn identification_reads_logs() {
     let lab = lab();
-    let identify = "identify --robot arm.toml --cut-off 20 --max-gap 20 --json --dynamic";
+    let identify = "identify --robot arm.toml --cut-off 20 --max-gap 20 --json --excitation";
     lab.run(&format!("{CONVERT} run.mcap --max-gap 20")).exits(0);
     let from_csv = lab.run(&format!("{identify} logged/0001_run.csv"));
     let from_log = lab.run(&format!("{identify} run.mcap"));

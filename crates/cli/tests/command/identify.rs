@@ -54,7 +54,7 @@ fn a_pendulum_is_found_and_its_file_is_a_robot() {
     let lab = lab();
     let run = lab
         .run(
-            "identify --robot pendulum.toml --dynamic a.csv b.csv --validate c.csv --cut-off 15 \
+            "identify --robot pendulum.toml --excitation a.csv b.csv --validate c.csv --cut-off 15 \
              --out found.toml --report report --json",
         )
         .exits(0)
@@ -103,7 +103,7 @@ const URDF: &str = r#"<robot name="pendulum">
 fn a_urdf_gets_the_identified_values_and_keeps_the_rest() {
     let lab = lab();
     lab.write("arm.urdf", URDF);
-    let job = "identify --robot arm.urdf --dynamic a.csv b.csv --cut-off 15";
+    let job = "identify --robot arm.urdf --excitation a.csv b.csv --cut-off 15";
     lab.run(&format!("{job} --out found.toml --urdf new.urdf")).exits(0).notes("wrote new.urdf");
     assert!(
         lab.read("new.urdf")
@@ -124,7 +124,7 @@ fn a_urdf_gets_the_identified_values_and_keeps_the_rest() {
     // The companion of new.urdf, with motor and friction, would overwrite the robot file.
     lab.run(&format!("{job} --out new.toml --urdf new.urdf"))
         .fails_with(&["--out new.toml", "another name"]);
-    lab.run("identify --robot pendulum.toml --dynamic a.csv --urdf new.urdf")
+    lab.run("identify --robot pendulum.toml --excitation a.csv --urdf new.urdf")
         .fails_with(&["pendulum.toml is not a URDF file"]);
 }
 
@@ -132,7 +132,7 @@ fn a_urdf_gets_the_identified_values_and_keeps_the_rest() {
 fn a_settings_file_holds_every_option_and_its_mistakes_are_reported() {
     let lab = lab();
     let settings = r#"robot = "pendulum.toml"
-dynamic = ["a.csv", { path = "b.csv", from = 2.0 }]
+excitation = ["a.csv", { path = "b.csv", from = 2.0 }]
 validate = ["c.csv"]
 [prepare]
 cut_off = 8.0
@@ -146,18 +146,18 @@ cut_off = 8.0
     }
     lab.write("job.toml", settings.replace("cut_off", "cutoff"));
     lab.run("identify --settings job.toml").fails_with(&["job.toml", "line 5", "cutoff"]);
-    lab.run("identify --robot pendulum.toml").fails_with(&["--dynamic"]);
-    lab.run("identify --dynamic a.csv").fails_with(&["--robot"]);
-    lab.run("identify --robot pendulum.toml --dynamic nowhere.csv")
+    lab.run("identify --robot pendulum.toml").fails_with(&["--excitation"]);
+    lab.run("identify --excitation a.csv").fails_with(&["--robot"]);
+    lab.run("identify --robot pendulum.toml --excitation nowhere.csv")
         .fails_with(&["nowhere.csv", "give a log"]);
-    lab.run("identify --robot pendulum.toml --dynamic a.csv --gains 1,2")
+    lab.run("identify --robot pendulum.toml --excitation a.csv --gains 1,2")
         .fails_with(&["gains: 2 given", "each of the 1 joints"]);
 }
 
 #[test]
 fn recordings_that_cannot_serve_their_purpose_are_named() {
     let lab = lab();
-    let job = "identify --robot pendulum.toml --cut-off 15 --dynamic b.csv";
+    let job = "identify --robot pendulum.toml --cut-off 15 --excitation b.csv";
     lab.write("copy.csv", lab.read("b.csv"));
     lab.run(&format!("{job} --validate copy.csv")).fails_with(&[
         "copy.csv",
@@ -178,9 +178,9 @@ fn recordings_that_cannot_serve_their_purpose_are_named() {
     lab.run(&format!("{job} gap.csv --max-gap 0.1")).exits(0);
     lab.write(
         "job.toml",
-        "robot = \"pendulum.toml\"\ndynamic = [\"a.csv\"]\n[model]\nseparate_gravity = true\n",
+        "robot = \"pendulum.toml\"\nexcitation = [\"a.csv\"]\n[model]\nseparate_gravity = true\n",
     );
-    lab.run("identify --settings job.toml").fails_with(&["separate_gravity", "--static"]);
+    lab.run("identify --settings job.toml").fails_with(&["separate_gravity", "--rest"]);
 }
 
 #[test]
@@ -201,8 +201,10 @@ fn windows_of_recordings_are_suites_and_motions_are_designed() {
 #[test]
 fn windows_free_of_friction_have_smaller_sets() {
     let lab = lab();
-    lab.run("identify --robot pendulum.toml --dynamic a.csv b.csv --cut-off 15 --out found.toml")
-        .exits(0);
+    lab.run(
+        "identify --robot pendulum.toml --excitation a.csv b.csv --cut-off 15 --out found.toml",
+    )
+    .exits(0);
     let prepare = "prepare --robot found.toml --data a.csv b.csv --window 0.5 --cut-off 5";
     lab.run(&format!("{prepare} --out recorded")).exits(0);
     lab.run(&format!("{prepare} --compensate --out free"))

@@ -45,7 +45,7 @@ fn every_command_refuses_the_branch_and_takes_the_lock() {
         "prepare --robot arm.urdf --data a.csv --out runs",
         "conform --robot arm.urdf --data runs --torque motor --out model.json",
         "inspect --robot arm.urdf --data runs",
-        "identify --robot arm.urdf --dynamic a.csv --cut-off 15 --urdf new.urdf",
+        "identify --robot arm.urdf --excitation a.csv --cut-off 15 --urdf new.urdf",
         "reproduce table1 --robot arm.urdf --motions 1 --orders 1",
     ];
     for command in commands {
@@ -76,7 +76,7 @@ fn files_keep_what_was_locked() {
     assert_eq!(locked.len(), 2);
     assert_eq!((&locked[1]["name"], &locked[1]["position"]), (&"finger2".into(), &0.03.into()));
     // The written URDF has the hand's inertia in the arm, and its companion has the lock.
-    let job = "identify --robot arm.urdf --lock finger1=0.03 --dynamic a.csv --cut-off 15";
+    let job = "identify --robot arm.urdf --lock finger1=0.03 --excitation a.csv --cut-off 15";
     lab.run(&format!("{job} --urdf new.urdf --out found.toml")).exits(0);
     assert!(lab.read("new.toml").contains("[lock]\nfinger1 = 0.03\n"), "{}", lab.read("new.toml"));
     let shown = |robot: &str| lab.run(&format!("robot show {robot} --json")).exits(0).json();

@@ -282,7 +282,7 @@ fn a_gantry_and_a_scara_are_identified() {
         let start = toml.replace("mass = 8.0", "mass = 5.0").replace("mass = 4.0", "mass = 2.0");
         lab.write("start.toml", start.replace("mass = 1.5", "mass = 1.0"));
         let run = lab.run(
-            "identify --robot start.toml --dynamic a.csv b.csv --validate c.csv --cut-off 15 \
+            "identify --robot start.toml --excitation a.csv b.csv --validate c.csv --cut-off 15 \
              --out found.toml --report report",
         );
         let run = run.exits(0);

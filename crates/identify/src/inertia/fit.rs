@@ -68,7 +68,7 @@ pub struct InertiaFit {
 pub(crate) fn fit_inertia(
     robot: &Robot,
     known: &Robot,
-    [dynamic, rests]: [&[PreparedLog]; 2],
+    [excitation, rests]: [&[PreparedLog]; 2],
     kept: Option<KnownFriction>,
     sampling: &Sampling,
     model: &ModelSettings,
@@ -77,7 +77,7 @@ pub(crate) fn fit_inertia(
     let columns = fitted_columns(known, model, friction);
     // Regression on motions and poses.
     let known_torque = KnownTorque::Friction(known);
-    let moving = Samples::in_motion(robot, &columns, dynamic, sampling, &known_torque);
+    let moving = Samples::in_motion(robot, &columns, excitation, sampling, &known_torque);
     if !moving.used.contains(&true) {
         return Err(Error::NoMotion);
     }
@@ -106,13 +106,13 @@ pub(crate) fn fit_inertia(
     let solved = (&fit.whitened, &fit.solution.x);
     // Identifiable combinations.
     let base = BaseParameters::of_robot(robot, &columns);
-    let reference = reference_factor(robot, &columns, dynamic, &fit.joints[0]);
+    let reference = reference_factor(robot, &columns, excitation, &fit.joints[0]);
     let factors = [&fit.whitened, &reference];
     let base_fit = base_parameters(robot, &base, factors, &values, has_bodies)?;
     Ok(InertiaFit {
         joints: fit.joints[0].clone(),
         gap: base.gap(),
-        diagonal: JointInertia::of_joints(robot, &columns, dynamic, solved),
+        diagonal: JointInertia::of_joints(robot, &columns, excitation, solved),
         columns,
         fit,
         values,

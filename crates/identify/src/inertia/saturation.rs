@@ -64,7 +64,7 @@ pub(crate) fn saturating(
     inertia: &InertiaFit,
     inputs: &Inputs,
 ) -> Vec<Option<Accepted>> {
-    let (logs, torque) = (&inputs.dynamic, KnownTorque::Friction(known));
+    let (logs, torque) = (&inputs.excitation, KnownTorque::Friction(known));
     let samples = Samples::in_motion(robot, &inertia.columns, logs, &inputs.sampling, &torque);
     let residuals = samples.residuals(&inertia.values);
     let of_joint = |joint: usize| {

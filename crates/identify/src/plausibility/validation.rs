@@ -68,7 +68,7 @@ pub(crate) fn still_recordings(validation: &[LogValidation]) -> Option<String> {
         format!(
             "no joint moves in the validation recordings {}: friction at rest has no unique value, \
              so that these recordings validate nothing; name motions with --validate, and poses \
-             with --static",
+             with --rest",
             names.join(", ")
         )
     })

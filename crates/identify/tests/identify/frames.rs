@@ -99,7 +99,7 @@ fn frames_do_not_change_what_stays_open() {
         Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random::new(5) };
     recorder.record(&lab.path().join("one.csv"), 20.0, slow(6, 1, 0.3));
     let mut settings = lab.settings();
-    settings.dynamic = vec![PathBuf::from("one.csv").into()];
+    settings.excitation = vec![PathBuf::from("one.csv").into()];
     let found = identified(&lab, &geometry(&truth), &settings);
     assert!(found.inertia.determined < found.inertia.parameters.len());
     assert!(found.inertia.condition.is_infinite());

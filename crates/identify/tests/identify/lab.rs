@@ -49,7 +49,7 @@ impl Lab {
     pub(crate) fn settings(&self) -> IdentifySettings {
         let entry = |name: &str| PathBuf::from(name).into();
         let mut settings = IdentifySettings {
-            dynamic: (1..=3).map(|k| entry(&format!("dynamic_{k}.csv"))).collect(),
+            excitation: (1..=3).map(|k| entry(&format!("dynamic_{k}.csv"))).collect(),
             validate: vec![entry("held_out.csv")],
             ..IdentifySettings::default()
         };
@@ -72,7 +72,7 @@ impl Lab {
             for (k, pose) in [0.0, 0.8, -0.6].into_iter().enumerate() {
                 let name = PathBuf::from(format!("slow_{joint}_{k}.csv"));
                 recorder.record(&self.path().join(&name), 12.0, slow(6, joint, pose));
-                settings.friction.push(name.into());
+                settings.one_joint.push(name.into());
             }
         }
     }

@@ -80,7 +80,7 @@ fn record(robot: &Robot, path: &Path, duration: f64, seed: u64) {
 
 fn settings(model: &str) -> IdentifySettings {
     let text = format!(
-        "dynamic = [\"a.csv\", \"b.csv\"]\nvalidate = [\"c.csv\"]\nprepare.cut_off = 6.0\n\
+        "excitation = [\"a.csv\", \"b.csv\"]\nvalidate = [\"c.csv\"]\nprepare.cut_off = 6.0\n\
          model.motor_inertia = false\nmodel.windows = []\n{model}"
     );
     IdentifySettings::from_toml(&text, "settings").unwrap()

@@ -73,7 +73,7 @@ fn a_recording_of_the_fit_cannot_validate() {
         order: None,
         compensated: false,
     };
-    recorded.settings.dynamic[1] = part(0.0, Some(8.0));
+    recorded.settings.excitation[1] = part(0.0, Some(8.0));
     recorded.settings.validate = vec![part(8.0, None)];
     assert!(recorded.found().held_out);
     recorded.settings.validate = vec![part(7.0, None)];
@@ -94,7 +94,7 @@ fn poses_validate_nothing() {
         assert!(joint.r2.unwrap() > 0.99 && joint.relative.unwrap() < 0.1, "{joint:?}");
     }
     let [warning] = &found.warnings[..] else { panic!("{:?}", found.warnings) };
-    assert_parts(warning, &["no joint moves", "pose", "--static"]);
+    assert_parts(warning, &["no joint moves", "pose", "--rest"]);
     assert!(!warning.contains("motion,"));
 }
 
@@ -116,13 +116,13 @@ fn times_in_milliseconds_are_blamed_on_their_recording() {
     recorded.record("pose.csv", "motion.csv");
     let milliseconds = |rows: &mut Vec<Vec<f64>>| rows.iter_mut().for_each(|row| row[0] *= 1000.0);
     recorded.edit("motion.csv", milliseconds);
-    recorded.settings.dynamic.push(entry("motion.csv"));
+    recorded.settings.excitation.push(entry("motion.csv"));
     assert_parts(&recorded.error(), &["motion.csv", "milliseconds", "give times in s"]);
     // Without a set cut-off too.
     recorded.settings.prepare.cut_off = None;
     assert_parts(&recorded.error(), &["motion.csv", "milliseconds"]);
     // A rest shows no velocity; its own sample rate is blamed.
-    recorded.settings.dynamic.pop();
+    recorded.settings.excitation.pop();
     recorded.edit("pose.csv", milliseconds);
     recorded.settings.rest = vec![entry("pose.csv")];
     assert_parts(&recorded.error(), &["pose:", "sample rate of 0.25", "times are in s"]);
@@ -132,7 +132,7 @@ fn times_in_milliseconds_are_blamed_on_their_recording() {
 fn gravity_needs_the_recordings_that_its_settings_promise() {
     let mut recorded = Recorded::new();
     recorded.settings.model.separate_gravity = true;
-    assert_parts(&recorded.error(), &["separate_gravity", "--static", "--friction"]);
+    assert_parts(&recorded.error(), &["separate_gravity", "--rest", "--one-joint"]);
     recorded.settings.model.separate_gravity = false;
     recorded.settings.rest = vec![entry("dynamic_1.csv")];
     assert_parts(&recorded.error(), &["no pose", "model.rest_speed = 0.01 rad/s"]);

@@ -48,9 +48,12 @@ fn is_rising(found: &Identification, joint: usize) -> bool {
 fn the_ur10e_predicts_validation_recordings() {
     let settings = r#"
         robot = "ur10e.urdf"
-        static = ["static"]
-        friction = ["friction"]
-        dynamic = ["excitation/20_02_12-50sec_12harm.csv", "excitation/20_02_10-30sec_12harm.csv"]
+        rest = ["static"]
+        one_joint = ["friction"]
+        excitation = [
+            "excitation/20_02_12-50sec_12harm.csv",
+            "excitation/20_02_10-30sec_12harm.csv",
+        ]
         validate = [
             "excitation/20_02_12-40sec_12harm.csv",
             "excitation/20_02_19_14harm50sec.csv",
@@ -102,7 +105,7 @@ fn healthy_suites_that_determine_little_have_no_faults() {
         for cut_off in ["", "prepare.cut_off = 6.0"] {
             let suite = |s: &str| format!("{{ path = \"suite_{s}\", compensated = true }}");
             let settings = format!(
-                "dynamic = [{}, {}]\nvalidate = [{}]\nmodel.physical = true\n{cut_off}\n",
+                "excitation = [{}, {}]\nvalidate = [{}]\nmodel.physical = true\n{cut_off}\n",
                 suite(a),
                 suite(b),
                 suite(held_out)
@@ -188,7 +191,7 @@ fn errors_of_the_held_out_second(second: u32) -> Vec<[f64; 2]> {
         fitted.push(format!("{{ path = \"{EXCITING}\", from = {until:?} }}"));
     }
     let settings = format!(
-        "dynamic = [{}]\nvalidate = [{{ path = \"{EXCITING}\", from = {from:?}, until = \
+        "excitation = [{}]\nvalidate = [{{ path = \"{EXCITING}\", from = {from:?}, until = \
          {until:?} }}]\nprepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.windows = \
          []\nmodel.physical = true",
         fitted.join(", ")
@@ -209,7 +212,7 @@ fn errors_of_the_held_out_second(second: u32) -> Vec<[f64; 2]> {
 fn half_of_the_pandas_motion_predicts_the_other_half() {
     let file = EXCITING;
     let settings = format!(
-        "dynamic = [{{ path = \"{file}\", until = 7.5 }}]\n\
+        "excitation = [{{ path = \"{file}\", until = 7.5 }}]\n\
          validate = [{{ path = \"{file}\", from = 7.5 }}]\n\
          prepare.cut_off = 6.0\nmodel.motor_inertia = false\nmodel.physical = false\n\
          model.windows = []"
@@ -245,7 +248,7 @@ fn half_of_the_pandas_motion_predicts_the_other_half() {
 fn the_double_pendulum_is_identified_up_to_its_friction() {
     let settings = r#"
         robot = "acrobot.urdf"
-        dynamic = ["openloop", "swing"]
+        excitation = ["openloop", "swing"]
         validate = [{ path = "repeats_acrobot/acrobot_01.csv", until = 4.0 }]
         prepare.cut_off = 6.0
     "#;

@@ -192,7 +192,7 @@ fn friction_that_the_recordings_do_not_bound_stays_small() {
     let motion = excitation(6, 1);
     recorder.record(&lab.path().join("one_way.csv"), 24.0, |t| forward(&motion, t));
     let mut settings = lab.settings();
-    settings.dynamic = vec![PathBuf::from("one_way.csv").into()];
+    settings.excitation = vec![PathBuf::from("one_way.csv").into()];
     settings.validate = vec![];
     settings.model.windows = vec![];
     settings.model.physical = Some(true);
@@ -211,7 +211,7 @@ fn undetermined_parameters_are_named() {
         Recorder { robot: &truth, noise: 0.1, gains: vec![1.0; 6], random: Random::new(5) };
     recorder.record(&lab.path().join("one.csv"), 20.0, slow(6, 1, 0.3));
     let mut settings = IdentifySettings {
-        dynamic: vec![PathBuf::from("one.csv").into()],
+        excitation: vec![PathBuf::from("one.csv").into()],
         ..IdentifySettings::default()
     };
     settings.model.physical = Some(false);

@@ -39,7 +39,7 @@ fn recorded(physical: bool, change: impl Fn(&mut [f64])) -> (Lab, IdentifySettin
     recorder.record(&path, 10.0, excitation(JOINTS, 1));
     edit(&path, |rows: &mut Vec<Vec<f64>>| rows.iter_mut().for_each(|row| change(row)));
     let mut settings = lab.settings();
-    settings.dynamic = vec![PathBuf::from("dynamic.csv").into()];
+    settings.excitation = vec![PathBuf::from("dynamic.csv").into()];
     settings.validate = vec![];
     settings.model.physical = Some(physical);
     settings.model.windows = vec![];
@@ -117,7 +117,7 @@ fn compensated_inputs_in_another_unit_are_named_alone() {
         });
         let path = PathBuf::from("dynamic.csv");
         let (from, until, order, compensated) = (0.0, None, None, true);
-        settings.dynamic = vec![LogEntry::Stretch { path, from, until, order, compensated }];
+        settings.excitation = vec![LogEntry::Stretch { path, from, until, order, compensated }];
         // No physical links come near inputs in kN m.
         let found = match identify(&arm, &settings, lab.path(), &|_, _| {}) {
             Ok(found) => found.warnings,

@@ -60,8 +60,8 @@ recordings, so that pages about them say so.
     )
 }
 
-const IDENTIFY: &str = "    reachtube identify --robot lwa4p --static rest --friction one-joint \\
-        --dynamic excitation --validate validation --out identified.toml --report identified
+const IDENTIFY: &str = "    reachtube identify --robot lwa4p --rest rest --one-joint one-joint \\
+        --excitation excitation --validate validation --out identified.toml --report identified
 ";
 
 fn files(options: &CampaignOptions) -> String {

@@ -124,8 +124,8 @@ fn settings(folder: &Path) -> IdentifySettings {
     };
     let mut settings = IdentifySettings {
         rest: entry("rest"),
-        friction: entry("one-joint"),
-        dynamic: entry("excitation"),
+        one_joint: entry("one-joint"),
+        excitation: entry("excitation"),
         validate: entry("validation"),
         ..IdentifySettings::default()
     };

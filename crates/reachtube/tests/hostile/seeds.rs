@@ -92,7 +92,7 @@ pub(crate) fn companions() -> Vec<Vec<u8>> {
 }
 
 pub(crate) fn settings() -> Vec<Vec<u8>> {
-    let text = "robot = \"arm.urdf\"\nstatic = [\"poses\"]\ndynamic = [\"a.csv\", { path = \
+    let text = "robot = \"arm.urdf\"\nrest = [\"poses\"]\nexcitation = [\"a.csv\", { path = \
                 \"b.csv\", from = 2.0, until = 4.5 }]\n\n[prepare]\ncut_off = 5.0\ngains = [1.0, \
                 2]\n\n[model]\nmotor_inertia = false\nprior = \"none\"\nwindows = [0.5]\n";
     vec![text.into()]

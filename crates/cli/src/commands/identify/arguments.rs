@@ -8,11 +8,11 @@ use crate::option_values::{Choices, choice, seconds};
 
 const HELP: &str = "\
 Examples:
-  reachtube identify --robot arm.urdf --static poses --friction slow --dynamic a.csv b.csv \\
+  reachtube identify --robot arm.urdf --rest poses --one-joint slow --excitation a.csv b.csv \\
       --validate c.csv --out arm.toml
   reachtube identify --settings arm-identify.toml --report report
-  reachtube identify --robot arm.urdf --dynamic run.mcap --topic /joint_states
-  reachtube identify --robot panda.toml --dynamic excitation --torque link --cut-off 6
+  reachtube identify --robot arm.urdf --excitation run.mcap --topic /joint_states
+  reachtube identify --robot panda.toml --excitation excitation --torque link --cut-off 6
 
 A settings file holds all of these options and more, see docs/identify.md. Options on the command
 line override it.";
@@ -36,14 +36,14 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
     /// Recordings of poses at rest
-    #[arg(long = "static", value_name = "PATH", num_args = 1..)]
+    #[arg(long, value_name = "PATH", num_args = 1..)]
     pub rest: Vec<PathBuf>,
     /// Recordings in which one joint at a time moves slowly
     #[arg(long, value_name = "PATH", num_args = 1..)]
-    pub friction: Vec<PathBuf>,
+    pub one_joint: Vec<PathBuf>,
     /// Recordings of exciting motions, for the inertial parameters
     #[arg(long, value_name = "PATH", num_args = 1..)]
-    pub dynamic: Vec<PathBuf>,
+    pub excitation: Vec<PathBuf>,
     /// Recordings held out of every fit [default: the exciting motions]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub validate: Vec<PathBuf>,

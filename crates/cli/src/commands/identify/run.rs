@@ -108,8 +108,8 @@ fn settings(args: &Arguments) -> Result<(IdentifySettings, PathBuf)> {
     let here = std::env::current_dir().unwrap_or_default();
     let given = [
         (&mut settings.rest, &args.rest),
-        (&mut settings.friction, &args.friction),
-        (&mut settings.dynamic, &args.dynamic),
+        (&mut settings.one_joint, &args.one_joint),
+        (&mut settings.excitation, &args.excitation),
         (&mut settings.validate, &args.validate),
     ];
     for (entries, paths) in given {

@@ -117,8 +117,8 @@ pub(super) const CASES: &[Case] = &[
         "prepare --robot arm.toml --data data/A_1.csv --cut-off 1e6 --out windows",
         &["cut_off = 1000000 Hz must be above 0 and below 50.0000 Hz"],
     ),
-    case("no robot for identify", "identify --dynamic data/A_1.csv", &["no robot is given"]),
-    case("no exciting motions", "identify --robot arm.toml", &["--dynamic"]),
+    case("no robot for identify", "identify --excitation data/A_1.csv", &["no robot is given"]),
+    case("no exciting motions", "identify --robot arm.toml", &["--excitation"]),
     case(
         "a position of another robot",
         "robot show arm.toml --expansion 1",
