@@ -188,7 +188,7 @@ def abstract(
         The order of its Taylor polynomials.
     expansion
         Where the model is expanded: n positions, or 2n positions and velocities, rad and rad/s; 0
-        where not given.
+        by default.
     progress
         As for `conform`.
 

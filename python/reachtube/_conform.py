@@ -69,7 +69,7 @@ def conform(
         friction are already subtracted), ``"motor"`` (motor torque at the output side of the
         gear) or ``"link"`` (link-side torque of a joint torque sensor). It is never guessed.
     suites
-        Names of the suites to use, or patterns such as ``"A*"``; all where none are given.
+        Names of the suites to use, or patterns such as ``"A*"``; all by default.
     paper_model
         Model 1, 2 or 3 of the paper. Not for an abstraction, which has its own.
     order
@@ -81,7 +81,7 @@ def conform(
         Groups of parameters of the nominal model that are chosen for the smallest sets.
     pull
         The weight of the pull of a fit toward the identified values, from 0 to 1; chosen by leaving
-        one motion out where it is not given.
+        one motion out if it is not given.
     disturbance
         How the disturbance may change: from sample to sample, not at all, or at any time.
     centre
@@ -102,7 +102,7 @@ def conform(
         rad/s.
     sensor_noise
         Radii of the sensors' noise, 2 or 2n numbers, rad and rad/s, which limit V; estimated from
-        the recordings where they are not given.
+        the recordings if they are not given.
     nominal
         Where nominal motions start: at the mean of a suite's first states, or at each run's own.
     equations
@@ -116,8 +116,8 @@ def conform(
         Samples later than this many seconds after the first are not used.
     horizon
         Length of the windows into which recordings are cut, s, each a suite of its own. Torques of
-        motors or links are filtered before, and the robot's gravity and dry friction are taken off
-        them. `check`, `reach` and `report` do the same to theirs.
+        motors or links are filtered before, and the robot's gravity and dry friction are subtracted
+        from them. `check`, `reach` and `report` do the same to theirs.
     max_gap
         Longest time between two samples, s.
     resume
@@ -128,7 +128,7 @@ def conform(
     Returns
     -------
     Model
-        With ``verified`` false where it could not be proved: that is no error.
+        With ``verified`` false if it could not be proved, which is not an error.
         Implausible results also produce a warning, `ReachtubeWarning`.
 
     Raises
@@ -218,12 +218,12 @@ def check(
         The recordings. For a model that `model` made they are logs, which are prepared as its own
         were.
     suites
-        Names of the suites to use; all where none are given.
+        Names of the suites to use; all by default.
     notion
-        Directions in which recordings must lie in the set; the model's own where not given.
+        Directions in which recordings must lie in the set; the model's own by default.
     until
         Samples later than this many seconds after the first are not used; the model's own limit
-        where it is not given.
+        if it is not given.
     max_gap
         Longest time between two samples, s.
     progress

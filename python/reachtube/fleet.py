@@ -117,16 +117,16 @@ def conform(
         The weight of the pull of a fit, as for `reachtube.conform`.
     robots
         Names in the manifest's column ``robot``, whose recordings are used. A manifest of several
-        robots is refused where none is chosen; ``None`` in a list stands for rows without a name.
+        robots is refused if none is chosen; ``None`` in a list stands for rows without a name.
     client
-        A Dask client; this process does everything where none is given.
+        A Dask client; this process does everything if none is given.
     runs_per_task
         Number of recordings that a task folds.
     on_defect
         Whether recordings with defects end the job, which then names all of them, or are left
         out and counted in the model.
     resume
-        A folder for finished tasks, from which a job that was stopped goes on, where the
+        A folder for finished tasks, from which a job that was stopped continues, if the
         manifest has the SHA-256 of each recording of a task.
     summaries
         A folder for what was read of each recording, as a Parquet data set.
@@ -189,24 +189,24 @@ def check(
     robots
         Names in the manifest's column ``robot``, whose recordings are used, as for `conform`.
     client
-        A Dask client; this process does everything where none is given.
+        A Dask client; this process does everything if none is given.
     runs_per_task
         Number of recordings that a task folds.
     on_defect
         Whether recordings with defects end the job, or are left out and counted.
     resume
-        A folder for finished tasks, from which a job that was stopped goes on, where the
+        A folder for finished tasks, from which a job that was stopped continues, if the
         manifest has the SHA-256 of each recording of a task.
     summaries
         A folder for what was read of each recording, as a Parquet data set.
     storage_options
         Options of the store, for fsspec.
     notion
-        Directions in which recordings must lie in the set; the model's own where not given. A
+        Directions in which recordings must lie in the set; the model's own by default. A
         model of another notion than ``"hull"`` is checked with ``notion="hull"``.
     until
         Samples later than this many seconds after the first are not used; the model's own limit
-        where it is not given.
+        if it is not given.
     max_gap
         Longest time between two samples, s.
     progress

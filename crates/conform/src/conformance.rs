@@ -31,7 +31,7 @@ use crate::stiction::{Stiction, stiction};
 use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
 
-/// How often U is widened for stiction at most, each time for what the wider sets need more.
+/// Largest number of times that U is widened for stiction, each time for the wider sets.
 const MOST_WIDENINGS: usize = 8;
 
 /// Factor by which U is widened beyond the friction that was found.
@@ -44,15 +44,15 @@ pub struct Conformance {
     pub sets: UncertaintySets,
     /// Cost of the sets: the integral over time of Σ_i s_i width_i of the reachable set and the
     /// noise, by the time for which each sample stands; suites whose sets differ count by their
-    /// mean. Infinite where a set was lost.
+    /// mean. Infinite if a set was lost.
     pub cost: f64,
     /// The cost as the paper sums it: over distinct sample times, each of which counts 1.
     pub cost_of_samples: f64,
     /// The dual objective of the program of a linear model: no sets cost less, to the solver's
     /// tolerance.
     pub lower_bound: Option<f64>,
-    /// How far the cost may be above the least, relative to the lower bound. Above 1e-6
-    /// the sets are conformant, but not minimal.
+    /// Gap between cost and lower bound, relative to the lower bound. Above 1e-6 the sets are
+    /// conformant, but not minimal.
     pub optimality_gap: Option<f64>,
     /// The paper's sum, eq. (21), which adds E where it should add |E|, for a linear model.
     pub paper_cost: Option<f64>,
@@ -60,15 +60,15 @@ pub struct Conformance {
     pub hull_volume: f64,
     /// The proof.
     pub verdict: Verdict,
-    /// What may be expected of motions that were not recorded.
+    /// The statement about motions that were not recorded.
     pub trust: Trust,
-    /// How the sets were scaled, where motions were held out for it.
+    /// The calibration of the sets, if motions were held out for it.
     pub calibration: Option<Calibration>,
     /// The sets without each of the motions they were found on; none for one motion, for a
     /// bisection, and for other notions than the hull.
     pub left_out: Vec<LeftOut>,
-    /// What each of these motions asks of wider sets. `None` without such motions, if the program
-    /// of some could not be solved, and for a model that is not linear.
+    /// The growth of the sets for each of these motions. `None` without such motions, if the
+    /// program of some could not be solved, and for a model that is not linear.
     pub allowance_needed: Option<AllowanceNeeded>,
     /// The radii that were added to the smallest X0 and U, 3n; empty if none were.
     pub allowance: Vec<f64>,
@@ -78,16 +78,16 @@ pub struct Conformance {
     pub deciding_runs: DecidingRuns,
     /// The joints whose motion follows the order of the runs.
     pub trends: Vec<Trend>,
-    /// How the sets of a model that is not linear were found.
+    /// The search for the sets of a model that is not linear.
     pub search: Option<SearchSummary>,
-    /// The recorded values that touch the reachable set, the closest first; the linearised set
-    /// where the model is not linear.
+    /// The recorded values that touch the reachable set, the closest first; the linearised set if
+    /// the model is not linear.
     pub tight: Vec<Witness>,
     /// Implausible results, and the most likely cause.
     pub warnings: Vec<Warning>,
-    /// How much the sets say about the motion of each joint.
+    /// Width of the sets beside the motion of each joint.
     pub usefulness: Usefulness,
-    /// The part of the variance of each state that the nominal motions explain, 2n; negative where
+    /// The part of the variance of each state that the nominal motions explain, 2n; negative if
     /// they are further away than the mean, `None` if the state hardly moves.
     pub nominal_explains: Vec<Option<f64>>,
     /// The sets that hold for every run, for a linear model whose friction depends on it; none for
@@ -103,7 +103,7 @@ pub struct Conformance {
 /// Finds the smallest uncertainty sets for which the problem's model is reachset conformant with
 /// its recordings, and proves the result with directed rounding. A linear model's sets solve one
 /// linear program; for others see [`Method`](crate::settings::Method). A search for the sets of a
-/// model that is not linear keeps what is finished in the file `resume`, goes on from it, and
+/// model that is not linear keeps what is finished in the file `resume`, continues from it, and
 /// removes it at the end.
 ///
 /// # Guarantee
@@ -112,9 +112,9 @@ pub struct Conformance {
 ///
 /// # Errors
 ///
-/// A model that runs away without any disturbance, a program that the solver gives up on, a
-/// `resume` file of another job or that cannot be written; as [`Problem::run`]. A model that could
-/// not be proved conformant is no error.
+/// A model that diverges without any disturbance, a program that the solver gives up on, a `resume`
+/// file of another job or that cannot be written; as [`Problem::run`]. A model that could not be
+/// proved conformant is no error.
 pub fn conform(
     problem: &Problem,
     progress: &dyn Progress,
@@ -157,7 +157,7 @@ fn conform_claim(
     judged(problem, found, calibration, Vec::new())?.with_stiction(problem)
 }
 
-/// Proves sets that were found, and says what they say.
+/// Proves sets that were found, and states the result.
 fn judged(
     problem: &Problem,
     found: Found,
@@ -242,7 +242,7 @@ impl Conformance {
     }
 
     /// Widens U by the dry friction that is possible where joints may come to rest, if the settings
-    /// ask for it, and proves the wider sets. They reach further, so that more joints may come to
+    /// select it, and proves the wider sets. They reach further, so that more joints may come to
     /// rest, and U is widened again until it covers these too. Wider sets hold every motion that
     /// the smallest ones hold, so that bounds for the next motion remain.
     ///

@@ -1,4 +1,4 @@
-//! A conformance from recordings to an answer, as every front end asks for it.
+//! A conformance from recordings to an answer, as every front end poses it.
 
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -19,14 +19,14 @@ use crate::progress::Progress;
 /// What the nominal model is made of.
 #[derive(Debug, Clone)]
 pub enum Basis {
-    /// A robot, whose model the settings ask for.
+    /// A robot, whose model the settings select.
     Robot(Box<Robot>),
     /// A model of a robot, with its own expansion point and order.
     Abstraction(Box<PolynomialModel>),
 }
 
-/// A conformance to compute: a robot, recordings and settings. It knows what the steps need of each
-/// other, so that every front end asks for the same job in the same way.
+/// A conformance to compute: a robot, recordings and settings. It passes data between the steps, so
+/// that every front end runs the same job in the same way.
 ///
 /// # Examples
 ///
@@ -191,7 +191,7 @@ impl Job {
         Problem::read(setup, self.source, &self.suites, keep, progress)
     }
 
-    /// Reads the recordings, fits the nominal model if that was asked for, finds the smallest sets
+    /// Reads the recordings, fits the nominal model if that was requested, finds the smallest sets
     /// and proves them.
     ///
     /// # Guarantee

@@ -1,4 +1,4 @@
-//! Friction that joints keep at rest.
+//! Static friction at rest.
 //!
 //! The torque of a joint at rest is known only up to a band: friction takes up any torque between
 //! its limits. A joint that comes to rest keeps a part of the friction of its last motion, with the

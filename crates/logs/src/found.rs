@@ -57,7 +57,7 @@ impl LogFiles {
 }
 
 impl LogOptions {
-    /// Returns the options that settings stand for, for a robot with these names of joints.
+    /// Returns the options of the settings, for a robot with these names of joints.
     ///
     /// # Errors
     ///

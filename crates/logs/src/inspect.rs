@@ -20,8 +20,8 @@ pub struct LogInspection {
     /// The summary of the recordings.
     #[serde(flatten)]
     pub inspection: Inspection,
-    /// What was understood of each log that can be used; recordings in the format of
-    /// `docs/recordings.md` are not among them.
+    /// The interpretation of each usable log; recordings in the format of `docs/recordings.md` are
+    /// not among them.
     pub logs: Vec<Understood>,
 }
 
@@ -44,7 +44,7 @@ pub fn inspect_logs(
     Ok(LogInspection { inspection, logs })
 }
 
-/// What was understood of a log, and the notes about it.
+/// The interpretation of a log, and the notes about it.
 type Found = (Option<Understood>, Vec<String>);
 
 /// Logs as a source of recordings.
@@ -56,7 +56,7 @@ struct LoggedRuns<'a> {
     /// The recordings of logs in MCAP and rosbag2.
     in_memory: MemoryRuns,
     options: LoggedOptions<'a>,
-    /// What was understood of each that was read, and its notes.
+    /// The interpretation of each log, and its notes.
     found: Mutex<Vec<Option<Found>>>,
 }
 

@@ -97,7 +97,7 @@ impl McapRecords {
     /// Returns the piece at the end of a file that has no footer.
     fn cut_off(&mut self, left: u64) -> Piece {
         let problem = match left {
-            0 => "the file ends without its footer, as where the recorder lost power",
+            0 => "the file ends without its footer, for example after a loss of power",
             _ => "the file ends in the middle of a record",
         };
         self.last(Piece::broken(self.position, problem.into(), left))

@@ -24,7 +24,7 @@ pub struct RunEntry {
     pub motion: Option<String>,
     /// Kind of the recording, as written.
     pub kind: Option<String>,
-    /// Temperature in °C, where recorded.
+    /// Temperature in °C, if recorded.
     pub temperature: Option<f64>,
     /// SHA-256 that the file should have, in hexadecimal.
     pub sha256: Option<String>,

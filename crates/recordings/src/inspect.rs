@@ -49,7 +49,7 @@ pub struct RunGroup {
     pub samples: [usize; 2],
     /// Duration of the longest recording, s.
     pub duration: f64,
-    /// Time between samples, s, where it is fixed and the same in all recordings.
+    /// Time between samples, s, if it is fixed and the same in all recordings.
     pub step: Option<f64>,
     /// Shortest and longest time between two samples, s.
     pub steps: [f64; 2],

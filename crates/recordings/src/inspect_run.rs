@@ -44,7 +44,7 @@ pub(crate) struct JointOfRun {
     pub speed: f64,
     /// Largest magnitude of the torque, N m.
     pub torque: f64,
-    /// Lowest and highest temperature, °C, where recorded.
+    /// Lowest and highest temperature, °C, if recorded.
     pub temperature: Option<[f64; 2]>,
     /// Number of samples in which the joint sticks.
     pub sticking: usize,

@@ -110,7 +110,7 @@ pub(crate) fn time_defect(path: &Path, run: &Run) -> Option<Defect> {
 ///
 /// # Panics
 ///
-/// Panics where the robot and the run differ in their number of joints.
+/// Panics if the robot and the run differ in their number of joints.
 #[must_use]
 pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
     let mut defects = ratio_defects(path, run, &robot.kinds());

@@ -127,7 +127,7 @@ fn options(args: &Arguments) -> Result<LogOptions> {
     Ok(LogOptions { recover: args.recover, ..LogOptions::new(&settings, &names)? })
 }
 
-/// Groups runs that repeat a motion, where this was asked for.
+/// Groups runs that repeat a motion, if requested.
 fn repeats(args: &Arguments, logs: &[Log], cuts: &mut [Cut]) -> Option<Vec<Repeats>> {
     // Runs that were named by times or markers stay where they are.
     let align = args.intervals.is_none() && args.marker.is_none();
@@ -135,8 +135,8 @@ fn repeats(args: &Arguments, logs: &[Log], cuts: &mut [Cut]) -> Option<Vec<Repea
     let single = cuts.iter().filter(|cut| cut.suite.is_none()).count();
     if single > 0 {
         output::warn(&format!(
-            "{single} of {} runs repeat no other and have no suite; assign them in runs.csv where \
-             they belong to one",
+            "{single} of {} runs repeat no other and have no suite; assign them in runs.csv if \
+                they belong to one",
             cuts.len()
         ));
     }

@@ -155,7 +155,7 @@ struct Numbers<'a> {
     computed: &'a Reproduced,
 }
 
-/// Computes what is asked for.
+/// Computes what is requested.
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let items = if args.names.is_empty() { &Item::ALL[..] } else { &args.names };
     let figure_path = |name: &str| args.out.join(format!("{name}.svg"));

@@ -1,4 +1,4 @@
-//! What recordings must satisfy beyond the rows.
+//! Conditions on recordings beyond the rows.
 
 use crate::claim::look::Look;
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::tube::judged::{Along, At};
 use crate::tube::plant::Plant;
 use crate::tube::tube::Tube;
 
-/// What recordings must satisfy beyond the rows.
+/// Conditions on recordings beyond the rows.
 pub(crate) trait Claim: Sync {
     /// Computes the reachable sets of `plant` under `sets`, and what was found about the recordings
     /// in them.
@@ -26,8 +26,8 @@ pub(crate) trait Claim: Sync {
     /// which must have a point.
     fn furthest(&self, directions: &[(At, Vec<f64>)]) -> Vec<Along>;
 
-    /// Returns the part by which sets may have to grow for a point before a search goes on; `None`
-    /// where only the rows are claimed.
+    /// Returns the part by which sets may have to grow for a point before a search continues;
+    /// `None` if only the rows are claimed.
     fn tolerance(&self) -> Option<f64>;
 }
 

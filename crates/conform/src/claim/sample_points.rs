@@ -136,7 +136,6 @@ impl AllPoints {
         }
     }
 
-    /// Returns the points at the samples that have some.
     fn into_samples(self) -> Vec<SamplePoints> {
         self.0.into_iter().flatten().filter(|at| !at.owners.is_empty()).collect()
     }

@@ -15,8 +15,7 @@ use crate::tube::tube::{Enclosure, Tube};
 use crate::tube::witness::Witness;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
-/// the recordings of one suite at one time in one state (of one run, where it has a set of its
-/// own).
+/// the recordings of one suite at one time in one state (of one run, if it has a set of its own).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Verdict {
@@ -96,8 +95,8 @@ impl Verdict {
     ///
     /// When `conformant`, every recorded value was proved with directed rounding to lie in the
     /// interval hull of the reachable set at its sample; of the computed outer enclosure of that
-    /// set where the model is not linear. A row within rounding of the boundary (about 1e-12
-    /// relative) that could not be proved counts as violated.
+    /// set if the model is not linear. A row within rounding of the boundary (about 1e-12 relative)
+    /// that could not be proved counts as violated.
     ///
     /// # Errors
     ///

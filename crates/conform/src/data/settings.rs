@@ -158,7 +158,7 @@ impl Weights {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// What the recorded torques are.
+    /// The kind of the recorded torques.
     pub torque: Torque,
     /// Which of the paper's models.
     pub abstraction: Abstraction,
@@ -204,7 +204,7 @@ pub struct Settings {
     /// Samples later than this many seconds after the first are not used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
-    /// How long the time between two samples may be.
+    /// Longest time between two samples.
     #[serde(skip)]
     pub gap_limit: GapLimit,
 }

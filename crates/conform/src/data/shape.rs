@@ -1,5 +1,5 @@
-/// How many states and inputs a system has. What a robot's states mean, n positions and then n
-/// velocities, is no matter of programs and searches.
+/// Numbers of states and inputs of a system. Programs and searches do not depend on what the states
+/// mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Shape {
     pub states: usize,

@@ -16,7 +16,7 @@ use crate::program::layout::Limits;
 use crate::program::program::Program;
 use crate::progress::{Progress, Silent};
 
-/// What a fit found.
+/// The result of a fit.
 #[derive(Debug)]
 pub struct Fitted {
     /// The problem with the fitted model, ready for [`conform`](crate::conform).
@@ -64,7 +64,7 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
     let left_out = Some(LeftOutMotions::from(&choice));
     let mut record = record(&fit, choice, Some(&found.numbers), costs)?;
     record.identified_calibrated_cost = calibrated_cost(problem);
-    // The numbers go to the model that was asked for, with all motions.
+    // The numbers go to the model that was requested, with all motions.
     let problem = match basis.other {
         None => fitted,
         Some(_) => basis.with_numbers(problem, &found.numbers)?,
@@ -97,8 +97,8 @@ pub(crate) fn fitted_setup(
 struct Basis<'a> {
     given: &'a Problem,
     groups: &'a [Group],
-    /// The problem that steers, where it is another: the linear model of the same robot, without
-    /// the motions that calibrate.
+    /// The problem that steers, if it is another: the linear model of the same robot, without the
+    /// motions that calibrate.
     other: Option<Problem>,
     data: Data,
     /// The lowest and the highest recorded value of each state, N.
@@ -258,7 +258,6 @@ fn calibrated_cost(problem: &Problem) -> Option<f64> {
     found?.ok().map(|(found, _)| found.cost)
 }
 
-/// Returns the record of a fit that was not taken.
 fn not_taken(fit: &FitTask, choice: PullChoice, steering: &Problem) -> Result<FitRecord> {
     let identified = smallest(steering)?;
     record(fit, choice, None, [identified.clone(), identified])
@@ -289,7 +288,7 @@ fn record(
         if groups.len() == 1 {
             return Ok(GroupCost { group: *group, cost_without: fit.whole_cost(&start)? });
         }
-        // Without a group a nominal motion may run away until the others are fitted again.
+        // Without a group a nominal motion may diverge until the others are fitted again.
         let again = fit.search(&wanted, &without);
         let again = again.or_else(|_| fit.search(&wanted, &start));
         let cost_without = match again {

@@ -1,4 +1,4 @@
-//! What a model file says about its recordings.
+//! Records of a model file about its recordings.
 
 use std::collections::BTreeSet;
 
@@ -76,7 +76,6 @@ impl SuiteRecord {
         self.motion.as_ref().unwrap_or(&self.name)
     }
 
-    /// Returns the number of runs.
     #[must_use]
     pub(crate) fn count(&self) -> usize {
         self.run_count.unwrap_or(self.runs.len())
@@ -118,7 +117,6 @@ impl DataRecord {
         Self { sha256: record.digest(), ..record }
     }
 
-    /// Returns whether the recordings are listed one by one.
     #[must_use]
     pub(crate) fn are_listed(&self) -> bool {
         self.root.is_none()

@@ -27,7 +27,7 @@ pub(super) enum OuterGauge {
     Lost(f64),
 }
 
-/// Number of powers of [`STEP`] to which a gauge is found that describes and proves nothing: 8 %.
+/// Accuracy of a gauge that only describes, as a number of powers of [`STEP`]: 8 %.
 pub(super) const COARSE: i32 = FIRST_STEP;
 
 /// Returns the gauge of the suites that are marked by the computed outer sets: a power of [`STEP`]

@@ -1,4 +1,4 @@
-//! What a conformant model says about motions that were not recorded.
+//! Statement of a conformant model about motions that were not recorded.
 //!
 //! "These sets enclose these runs" is a fact. Anything about the next motion is statistical, and
 //! needs motions that are independent and alike. Several suites of one motion count once.
@@ -21,7 +21,7 @@ use crate::tube::witness::Witness;
 /// Confidence of the bounds that are reported.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// How far a statement about motions that were not recorded carries.
+/// Kinds of statements about motions that were not recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrustKind {
@@ -51,7 +51,7 @@ pub struct Trust {
     pub confidence: f64,
     /// How the bound is made and what it assumes.
     pub basis: String,
-    /// How far the bound carries; `None` if there is none, and in files of versions before it was
+    /// The kind of the bound; `None` if there is none, and in files of versions before it was
     /// recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<TrustKind>,
@@ -64,7 +64,7 @@ impl Trust {
     /// It is an indication if a condition of the theorem is not met.
     ///
     /// At a first sample that no recording leaves, all motions touch a set without width. Motions
-    /// that also touch it elsewhere give the same sets alone, so only they count; where there are
+    /// that also touch it elsewhere give the same sets alone, so only they count; if there are
     /// none, all do.
     #[must_use]
     pub fn of_fit(problem: &Problem, tight: &[Witness]) -> Self {
@@ -220,7 +220,7 @@ impl Trust {
         if self.kind != Some(TrustKind::Guarantee) || self.average_probability.is_some() {
             return self;
         }
-        let condition = "its theorem asks for fixed settings, and some were chosen from the logs";
+        let condition = "its theorem needs fixed settings, and some were chosen from the logs";
         let basis = format!("{}; {condition}", self.basis);
         Self { basis, kind: Some(TrustKind::Indication), ..self }
     }
@@ -301,19 +301,19 @@ fn unmet(problem: &Problem) -> Option<&'static str> {
         Some("its theorem is proved for convex programs, and this model is not linear")
     } else if is_limited {
         Some(
-            "its theorem asks for fixed limits, and the limit by sensor noise was estimated from \
+            "its theorem needs fixed limits, and the limit by sensor noise was estimated from \
              the recordings",
         )
     } else if settings.initial_limit != InitialLimit::None {
-        Some("its theorem asks for fixed limits, and the limit of X0 depends on the recordings")
+        Some("its theorem needs fixed limits, and the limit of X0 depends on the recordings")
     } else if ends_alone() {
         Some(
-            "its theorem asks for a fixed cost, and this one counts until the end of a single \
+            "its theorem needs a fixed cost, and this one counts until the end of a single \
              motion",
         )
     } else if is_seen {
         Some(
-            "its theorem asks for a fixed model, and this robot was identified from recordings \
+            "its theorem needs a fixed model, and this robot was identified from recordings \
               among these",
         )
     } else {

@@ -10,7 +10,7 @@ use crate::result::front_end::FrontEnd;
 pub struct Remedy {
     /// The name of the setting, as on the command line but without dashes in front.
     pub setting: Cow<'static, str>,
-    /// Its value; empty where the user has to choose one.
+    /// Its value; empty if the user has to choose one.
     pub value: String,
     /// What the setting does: the rest of a sentence whose subject is the setting.
     pub effect: Cow<'static, str>,

@@ -40,7 +40,7 @@ struct BisectionState {
     low: f64,
     /// The value at which its bisection started.
     first: f64,
-    /// How often the reachable sets of all cases were computed.
+    /// Number of times that the reachable sets of all cases were computed.
     reachable_sets: usize,
 }
 

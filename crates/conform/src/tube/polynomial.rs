@@ -27,7 +27,7 @@ const HELD: [usize; 2] = [24, 200];
 /// A model that is not linear over recordings. Its strands are cases.
 pub(crate) struct Polynomial<'a> {
     pub problem: &'a Problem,
-    /// How hard to try where a set is lost.
+    /// Effort after a set is lost.
     pub effort: Effort,
 }
 

@@ -123,7 +123,7 @@ fn mark(robot: &Robot, options: &CampaignOptions) -> String {
     serde_json::to_string_pretty(&value).expect("options have string keys") + "\n"
 }
 
-/// Returns the paths in a folder; none where it does not exist.
+/// Returns the paths in a folder; none if it does not exist.
 fn entries(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten();
     entries.flatten().map(|entry| entry.path()).collect()

@@ -12,7 +12,7 @@
 //! them on; they take a second or two to make.
 //!
 //! The files are independent of each other, so that all cores are used, and each is written whole.
-//! A campaign that was stopped goes on where it ended, with the same bytes.
+//! A campaign that was stopped continues where it ended, with the same bytes.
 
 pub(crate) mod error;
 mod excitation;

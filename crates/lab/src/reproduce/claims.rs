@@ -1,4 +1,4 @@
-//! What the paper says of its experiment, laid beside what came out here.
+//! Statements of the paper about its experiment, compared with the results here.
 
 use reachtube_abstraction::ModelKind;
 use reachtube_conform::Notion;
@@ -27,7 +27,7 @@ const LARGEST_DEVIATION: f64 = 4.0;
 pub struct Claim {
     /// The table or figure.
     pub place: String,
-    /// What is claimed, in the paper's words where it has them.
+    /// What is claimed, in the paper's words if it has them.
     pub claim: String,
     /// What counts as holding.
     pub threshold: String,
@@ -318,12 +318,12 @@ impl Table3 {
         };
         vec![
             claim(
-                "Parameters are recovered where the law can show what the arm does",
+                "Parameters are recovered if the law contains the effects of the arm",
                 &deviations(false),
             )
             .because("See the table."),
             claim(
-                "Parameters are recovered where the arm does what the law cannot show",
+                "Parameters are recovered although the law lacks effects of the arm",
                 &deviations(true),
             )
             .because(
@@ -341,7 +341,7 @@ impl Coverage {
             Claim::new(
                 "Next motion",
                 &row.statement,
-                "wrong no more often than it says",
+                "wrong no more often than stated",
                 "not in the paper",
                 format!("wrong {:.3}, may be {:.3}", row.observed, row.nominal),
                 row.holds(),

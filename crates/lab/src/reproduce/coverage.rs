@@ -115,7 +115,7 @@ type Campaign = (Stated, Vec<(f64, f64)>);
 ///
 /// # Errors
 ///
-/// Fails with [`ReproduceError::NoCampaigns`] where there are none, and as
+/// Fails with [`ReproduceError::NoCampaigns`] if there are none, and as
 /// [`conform`](reachtube_conform::conform).
 ///
 /// # Examples

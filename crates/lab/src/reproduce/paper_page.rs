@@ -12,7 +12,7 @@ use crate::campaign::CampaignOptions;
 use reachtube_files::TOOL;
 use reachtube_page::{Error, TextTable, charts_svg, document, long_table, section};
 
-/// What the page shows.
+/// The contents of the page.
 struct PaperPage<'a> {
     computed: &'a Reproduced,
     table1: &'a Table1,

@@ -1,4 +1,4 @@
-//! The tables and figures that are asked for, computed one after another.
+//! The tables and figures that are requested, computed one after another.
 
 use std::path::Path;
 
@@ -134,7 +134,7 @@ pub struct Reproduced {
 ///
 /// # Errors
 ///
-/// - [`CampaignError`](crate::campaign::CampaignError) if Fig. 3, Fig. 5 or Table III is asked for
+/// - [`CampaignError`](crate::campaign::CampaignError) if Fig. 3, Fig. 5 or Table III is requested
 ///   and the folder is not a campaign's.
 /// - [`ReproduceError`](super::ReproduceError) for sizes that compute nothing, and suites that are
 ///   not there.
@@ -177,7 +177,7 @@ pub fn reproduce(
 }
 
 impl Reproduced {
-    /// Computes Table II and Figs. 1 to 4, if they are asked for. The figures need the hull only.
+    /// Computes Table II and Figs. 1 to 4, if they are requested. The figures need the hull only.
     fn sets(
         &mut self,
         items: &[Item],

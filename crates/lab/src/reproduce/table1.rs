@@ -52,7 +52,7 @@ pub struct Cell {
     pub speed: Speed,
     /// Number of terms of the model.
     pub terms: usize,
-    /// Mean |velocity error| over time and joints of each motion \[rad/s\]; none where the model
+    /// Mean |velocity error| over time and joints of each motion \[rad/s\]; none if the model
     /// diverged.
     pub errors: Vec<Option<f64>>,
     /// Mean of the errors over the motions that did not diverge \[rad/s\].
@@ -61,7 +61,7 @@ pub struct Cell {
     pub spread: Option<f64>,
     /// Number of motions in which the model diverged.
     pub diverged: usize,
-    /// The paper's entry, where there is one and the robot is the paper's.
+    /// The paper's entry, if there is one and the robot is the paper's.
     pub paper: Option<Paper>,
 }
 
@@ -86,7 +86,7 @@ pub struct Table1 {
 ///
 /// # Errors
 ///
-/// Fails with [`ReproduceError`] where there are no motions or no orders, or a joint cannot move
+/// Fails with [`ReproduceError`] if there are no motions or no orders, or a joint cannot move
 /// within the range. Fails also for orders that [`PolynomialModel::new`] refuses.
 ///
 /// # Examples

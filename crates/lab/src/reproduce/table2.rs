@@ -17,7 +17,7 @@ use crate::error::Result;
 /// What Table II is made of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table2Options {
-    /// The suites; all where none is named.
+    /// The suites; all if none is named.
     pub suites: Vec<String>,
     /// The notions of enclosure, each for both cases of the table.
     pub notions: Vec<Notion>,

@@ -66,7 +66,7 @@ impl Trajectories {
     }
 
     /// Simulates a model over a block and compares it with the velocities of the robot. Returns the
-    /// mean |velocity error| over time and joints \[rad/s\] for each motion; none where the model
+    /// mean |velocity error| over time and joints \[rad/s\] for each motion; none if the model
     /// diverges.
     pub(super) fn errors(
         &self,

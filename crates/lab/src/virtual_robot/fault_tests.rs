@@ -205,7 +205,7 @@ fn recordings(count: u64, cycles: usize) -> MemoryRuns {
     runs
 }
 
-/// What a monitor found.
+/// The result of a monitor.
 #[derive(Debug, Default)]
 struct Watched {
     /// Time to the first window that is left, s.
@@ -296,7 +296,7 @@ fn faults_are_found_and_a_healthy_minute_is_quiet() {
         let found = trials(&model, None, fault, horizon, 2);
         assert!(found.iter().all(|found| found.left.is_some()), "{fault:?} {found:?} {growth}");
     }
-    // Sets do not tell these from healthy motion, but the calibrated alarm does.
+    // Sets do not distinguish these faults from healthy motion; the calibrated alarm does.
     let push = Fault::Push(10.0, Direction::Against);
     for fault in [Fault::Payload(0.5), Fault::Drag(3.0), Fault::Slip(0.002), push] {
         let found = trials(&model, Some(&healthy), fault, horizon, 2);

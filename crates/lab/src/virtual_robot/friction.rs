@@ -43,7 +43,7 @@ impl JointFriction {
 
     /// Returns viscous friction \[N m\] at a velocity \[rad/s\].
     ///
-    /// Beyond the joint's speed limit, where its cubic was not identified, it goes on along the
+    /// Beyond the joint's speed limit, where its cubic was not identified, it continues along the
     /// tangent: a cubic that falls at last would drive the joint.
     pub(super) fn viscous(&self, qd: f64) -> f64 {
         let (law, inside) = (&self.law.viscous, qd.clamp(-self.limit, self.limit));

@@ -9,7 +9,7 @@ use reachtube_robot::{
 use super::parameters::VirtualRobotParameters;
 use crate::error::Result;
 
-/// A virtual robot: the nominal model that its controller knows, and the true robot.
+/// A virtual robot: the nominal model of its controller, and the true robot.
 #[derive(Debug, Clone)]
 pub(crate) struct VirtualRobot {
     parameters: VirtualRobotParameters,

@@ -83,7 +83,7 @@ fn a_file_without_footer_loses_nothing() {
     let bytes = mcap_bytes("zstd", &messages(&states));
     let (end, _) = of_kind(&bytes, op::DATA_END)[0];
     for (length, words) in [
-        (end, "the file ends without its footer, as where the recorder lost power"),
+        (end, "the file ends without its footer, for example after a loss of power"),
         (end + 4, "the file ends in the middle of a record"),
         (bytes.len() - 1, "the data is whole, but the file ends without its footer"),
     ] {

@@ -1,4 +1,4 @@
-//! What is exported: a model over one recorded input, with its sets and our bounds.
+//! An exported case: a model over one recorded input, with its sets and our bounds.
 
 use reachtube_conform::data::Case;
 use reachtube_conform::{Problem, SuiteReach, Tube, UncertaintySets, reach};
@@ -23,11 +23,11 @@ pub struct ExportCase {
     /// The sample times, which are the tested ones.
     pub grid: TimeGrid,
     /// The input that is held from each sample to the next, samples x n: the recorded one, less the
-    /// correction of the model where it has one. Where nominal motions satisfy the robot's
-    /// equations, it is the one under which the linear model accelerates as the robot does. The
-    /// last one acts on nothing.
+    /// correction of the model if it has one. Where nominal motions satisfy the robot's equations,
+    /// it is the one under which the linear model accelerates as the robot does. The last one acts
+    /// on nothing.
     pub inputs: Vec<f64>,
-    /// How the disturbance changes in time.
+    /// The variation of the disturbance in time.
     pub disturbance: Disturbance,
     /// The nominal motion and our bounds.
     pub reach: SuiteReach,
@@ -107,7 +107,7 @@ impl ExportCase {
         self.grid.times()[self.steps()]
     }
 
-    /// Returns the tested step, s: the step of the samples, or the mean where they have none.
+    /// Returns the tested step, s: the step of the samples, or the mean if they have none.
     #[must_use]
     pub fn step(&self) -> f64 {
         self.grid.step().unwrap_or(self.horizon() / self.steps() as f64)

@@ -5,7 +5,7 @@ use super::meaning::Meaning;
 use super::text::{comment, number, numbers, rows};
 use super::{ExportFile, InputForm, Tool};
 
-/// What the script does with its numbers. HyLAA has no drift: it is a state `one` that stays 1.
+/// The text after the numbers. HyLAA has no drift: it is a state `one` that stays 1.
 const PROGRAM: &str = r#"
 
 def automaton():

@@ -83,7 +83,7 @@ impl Dialect {
     }
 
     /// Calls `row` with the line and the fields of each row after the header, until it returns
-    /// whether to go on with `false`. This reads text of any kind.
+    /// whether to continue with `false`. This reads text of any kind.
     pub(super) fn rows(
         &self,
         bytes: &[u8],

@@ -164,7 +164,7 @@ struct Log<'a> {
 }
 
 impl Log<'_> {
-    /// Reads the numbers, brings them to s, rad and rad/s, and says what was done.
+    /// Reads the numbers, brings them to s, rad and rad/s, and notes the changes.
     fn logged(&self, contents: &[Vec<u8>]) -> Result<Logged, Vec<Defect>> {
         let Self { files, assignment, options, .. } = *self;
         let tables = self.tables(contents)?;

@@ -79,7 +79,6 @@ impl Table {
         (reader.table, reader.defects)
     }
 
-    /// Returns the number of rows.
     pub(super) fn len(&self) -> usize {
         self.rows.len()
     }
@@ -252,7 +251,7 @@ impl Reader<'_> {
         is_sound
     }
 
-    /// Reads the fields of one line, and keeps its numbers where they have no defect.
+    /// Reads the fields of one line, and keeps its numbers if they have no defect.
     fn careful(&mut self, line: u64, fields: &[&[u8]]) {
         let (found, expected) = (fields.len(), self.row.fields());
         if found != expected {

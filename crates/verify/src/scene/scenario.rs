@@ -44,7 +44,7 @@ pub struct Scenario {
     file: File,
 }
 
-/// What a robot must stay clear of, and how hard to try to prove it.
+/// The obstacles that a robot must stay clear of, and the effort of the proof.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// The obstacles, at least one.

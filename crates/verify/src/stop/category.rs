@@ -8,7 +8,7 @@ use crate::stop::deceleration::Deceleration;
 use crate::stop::path::Path;
 use crate::stop::stop::{Stop, stop_0, stop_1};
 
-/// How a robot is stopped (IEC 60204-1).
+/// Category of a stop (IEC 60204-1).
 #[derive(Debug, Clone, PartialEq)]
 pub enum Category {
     /// Drives off and brakes on at once.
@@ -17,7 +17,7 @@ pub enum Category {
     One {
         /// The greatest deceleration of each joint on a straight path \[rad/s²; m/s²\].
         limits: Vec<f64>,
-        /// How far the torque of each joint may be from the controller's, as the model's U.
+        /// Difference of each joint's torque from the controller's, as the model's U.
         input_set: Hyperrectangle,
     },
 }

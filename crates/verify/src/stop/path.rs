@@ -66,8 +66,8 @@ impl Path {
         self.times[self.times.len() - 1]
     }
 
-    /// Returns positions, velocities and accelerations, n each, at a time (s); before the start
-    /// and after the end the cubic goes on.
+    /// Returns positions, velocities and accelerations, n each, at a time (s); before the start and
+    /// after the end the cubic continues.
     #[must_use]
     pub fn at(&self, time: f64) -> [Vec<f64>; 3] {
         let n = self.states.len() / self.times.len() / 2;

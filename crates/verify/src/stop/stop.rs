@@ -19,7 +19,7 @@ const STEP: f64 = 0.002;
 /// not stop, s.
 const LONGEST: f64 = 5.0;
 
-/// How often the enclosure of a step is widened before the stop counts as lost.
+/// Number of times that the enclosure of a step is widened before the stop counts as lost.
 const ATTEMPTS: usize = 12;
 
 /// The stop of one joint.
@@ -155,7 +155,7 @@ struct Run<'a> {
     brakes: &'a Brakes,
     /// `None` once the drives are off.
     drive: Option<Drive<'a>>,
-    /// When the drives are off, s.
+    /// Time from which the drives are off, s.
     off: f64,
     terms: Terms<'a>,
     time: f64,
@@ -171,7 +171,7 @@ struct Run<'a> {
     known: Vec<Interval>,
 }
 
-/// What is known about the states over a step.
+/// Bounds of the states over a step.
 struct Step {
     duration: f64,
     moving: Vec<usize>,

@@ -19,7 +19,7 @@ pub struct Clearance {
     pub link: String,
     /// Name of the obstacle.
     pub obstacle: String,
-    /// A lower bound of their distance \[m\], over all motions of the model; negative where no
+    /// A lower bound of their distance \[m\], over all motions of the model; negative if no
     /// distance above 0 is proved.
     pub distance: f64,
     /// Start of the step in which it is the smallest, s.

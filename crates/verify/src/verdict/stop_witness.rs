@@ -14,7 +14,7 @@ use crate::verdict::witness::{Approach, StopOfWitness, Witness};
 /// Number of pairs of a link and an obstacle that are tried, the closest first.
 const PAIRS: usize = 3;
 
-/// How often the worst disturbance is sought anew, along the motion that was found before.
+/// Number of searches for the worst disturbance, each along the motion found before.
 const ROUNDS: usize = 3;
 
 /// Steps of the simulation in 2 ms, while extremes are compared and for the witness.

@@ -13,7 +13,7 @@ use crate::scene::scenario::Scene;
 use crate::verdict::clearance::Clearance;
 use crate::verdict::gradient::Motion;
 
-/// How often the worst disturbance is sought anew, along the motion that was found before.
+/// Number of searches for the worst disturbance, each along the motion found before.
 const ROUNDS: usize = 3;
 
 /// Step of the differences that give the slope of a distance, rad or m.
@@ -26,7 +26,7 @@ pub struct Witness {
     pub link: String,
     /// Name of the obstacle.
     pub obstacle: String,
-    /// Their distance \[m\] at that sample, in floating point; negative where they overlap.
+    /// Their distance \[m\] at that sample, in floating point; negative if they overlap.
     pub distance: f64,
     /// Time of that sample, s.
     pub time: f64,
@@ -70,7 +70,7 @@ impl Witness {
     }
 }
 
-/// What the search for a motion needs.
+/// Inputs of the search for a motion.
 #[derive(Clone, Copy)]
 pub(crate) struct Approach<'a> {
     pub problem: &'a Problem,

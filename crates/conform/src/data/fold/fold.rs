@@ -108,7 +108,7 @@ impl Fold {
     ///
     /// # Errors
     ///
-    /// As [`new`](Self::new), but the setup may ask for explanations.
+    /// As [`new`](Self::new), but the setup may request explanations.
     pub(crate) fn comparing(
         setup: &Setup,
         digest: String,

@@ -1,5 +1,5 @@
-//! Flow*: a model file for version 2.1 where the model is affine and no recorded input changes it,
-//! and otherwise a C++ program for its library that steps from sample to sample.
+//! Flow*: a model file for version 2.1 if the model is affine and no recorded input changes it, and
+//! otherwise a C++ program for its library that steps from sample to sample.
 
 mod model_file;
 mod program;

@@ -12,7 +12,7 @@ use crate::export::text::{number, numbers, terms};
 /// Number of terms on one line.
 const TERMS_PER_LINE: usize = 4;
 
-/// What stands before the numbers.
+/// The text before the numbers.
 const HEAD: &str = r#"//
 // Build beside the library, the folder flowstar-toolbox of its repository, and run here:
 //   g++ -O2 -std=c++11 -I TOOLBOX flowstar.cpp -L TOOLBOX -lflowstar -lmpfr -lgmp -lgsl \
@@ -31,7 +31,7 @@ using namespace flowstar;
 
 "#;
 
-/// What the program does with its numbers.
+/// The text after the numbers.
 const PROGRAM: &str = r#"
 // The order of the Taylor models, and the factor by which a remainder estimate that does not
 // contain itself grows.

@@ -12,7 +12,7 @@ use crate::export::ExportError;
 use crate::export::draws::Draws;
 use crate::export::text::{comment, harmless, number, numbers};
 
-/// Velocity limit \[rad/s; m/s\] and effort limit \[N m; N\] where the robot has none, because URDF
+/// Velocity limit \[rad/s; m/s\] and effort limit \[N m; N\] if the robot has none, because URDF
 /// asks for numbers.
 const NO_LIMIT: f64 = 1000.0;
 
@@ -22,7 +22,7 @@ const COMPARED: usize = 50;
 /// Largest difference of torques, relative to the largest, that rounding explains.
 const SAME_TORQUES: f64 = 1e-9;
 
-/// A robot as URDF, and what URDF cannot say.
+/// A robot as URDF, and the parts that URDF lacks.
 #[derive(Debug, Clone)]
 pub struct UrdfFiles {
     /// The URDF.
@@ -61,7 +61,7 @@ pub fn urdf(robot: &Robot) -> Result<UrdfFiles, ExportError> {
 /// # Errors
 ///
 /// As [`urdf`]; [`ExportError::Robot`] for a URDF that cannot be read or has other joints, and
-/// [`ExportError::OtherGeometry`] where its links lie elsewhere.
+/// [`ExportError::OtherGeometry`] if its links lie elsewhere.
 pub fn updated_urdf(robot: &Robot, path: &Path, locks: &[Lock]) -> Result<UrdfFiles, ExportError> {
     own_links(robot)?;
     let options = UrdfOptions { locks: locks.to_vec(), any_inertia: true, ..Default::default() };
@@ -103,7 +103,7 @@ fn largest_difference(robot: &Robot, other: &Robot) -> f64 {
 }
 
 fn mark(robot: &Robot) -> String {
-    format!("# {MARK} ({TOOL}): what robot.urdf cannot say of {}.\n", harmless(robot.name()))
+    format!("# {MARK} ({TOOL}): parts of {} that URDF lacks.\n", harmless(robot.name()))
 }
 
 fn text(robot: &Robot, bodies: &[Body]) -> String {

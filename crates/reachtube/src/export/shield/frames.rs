@@ -11,7 +11,7 @@ use crate::export::ExportError;
 use crate::export::robot::{Body, bodies};
 use crate::export::text::{harmless, number, numbers};
 
-/// What a capsule around several others grows by \[m\], for rounding.
+/// Growth of a capsule around several others \[m\], for rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The links of a robot in frames that turn about z.
@@ -60,7 +60,7 @@ impl Frames {
             let of_link: Vec<Capsule> =
                 capsules.as_slice().iter().filter(|capsule| capsule.joint == j).copied().collect();
             let capsule = enclosing(&of_link).ok_or_else(|| {
-                refused(j, "its link has no capsule, and the tool asks for one", "add one")
+                refused(j, "its link has no capsule, and the tool needs one", "add one")
             })?;
             frames.capsules.push(frames.moved(j, &capsule, &joint.after));
         }
@@ -113,8 +113,7 @@ impl Frames {
         let own = self.bodies(robot).map_err(|_| ExportError::Refused {
             place: robot.name().into(),
             problem:
-                "the shield asks for masses of the links, and these have none that simulators \
-                      take"
+                "the shield needs masses of the links, and simulators accept none of these links"
                     .into(),
             remedy: "name the shield's own robot file with --update, or identify the robot with \
                      physical links (model.physical = true in the settings of identify)"

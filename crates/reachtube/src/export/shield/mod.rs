@@ -42,7 +42,7 @@ pub struct LinkMargin {
     pub time: f64,
 }
 
-/// What the shield's two files say of a model.
+/// The contents of the shield's two files.
 #[derive(Debug, Clone)]
 pub struct Shield {
     /// The secure radius \[m\]: at least the largest margin.
@@ -51,7 +51,7 @@ pub struct Shield {
     pub margins: Vec<LinkMargin>,
     /// The largest radius of a capsule \[m\].
     pub largest_capsule: f64,
-    /// What the motions reach in velocity and acceleration.
+    /// The velocities and accelerations that the motions reach.
     pub covered: Covered,
     /// The files.
     pub files: Vec<ExportFile>,
@@ -148,7 +148,7 @@ impl<'a> Links<'a> {
     }
 }
 
-/// Tells whether a file describes links, and not limits of motions.
+/// Returns whether a file describes links, and not limits of motions.
 fn is_of_links(file: &ShieldFile) -> bool {
     file.text.lines().any(|line| line.starts_with("enclosures:"))
 }
