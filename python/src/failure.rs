@@ -4,10 +4,10 @@ use std::path::{MAIN_SEPARATOR, Path};
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use reachtube::conform;
 use reachtube::conform::result::FrontEnd;
-use reachtube::conform::{self};
 use reachtube::recordings::{self, Defect};
-use reachtube::robot::RobotError;
+use reachtube_files::{ErrorKind, Kind};
 
 /// Why a job failed, before it becomes an exception. The kinds are the classes of
 /// `reachtube.errors`.
@@ -114,127 +114,21 @@ pub(crate) fn without_folder(text: &str, folder: &Path) -> String {
     parts.fold(first, |text, part| text + &part.replacen(".csv", "", 1))
 }
 
-impl From<recordings::Error> for Failure {
-    fn from(error: recordings::Error) -> Self {
-        let text = error.to_string();
-        match error {
-            recordings::Error::Defects(defects) => Self::Defects(defects, text),
-            recordings::Error::UnknownSuite { .. } | recordings::Error::RepeatedSuite { .. } => {
-                Self::Setting(text)
-            }
+impl<E: Kind> From<E> for Failure {
+    fn from(error: E) -> Self {
+        let text = match (&error as &dyn Kind).find::<conform::Error>() {
+            Some(error) => error.written_for(FrontEnd::Python),
+            None => error.to_string(),
+        };
+        let defects = match (&error as &dyn Kind).find() {
+            Some(recordings::Error::Defects(defects)) => Some(defects.clone()),
+            _ => None,
+        };
+        match (defects, error.kind()) {
+            (Some(defects), _) => Self::Defects(defects, text),
+            (None, ErrorKind::Setting | ErrorKind::Usage) => Self::Setting(text),
+            (None, ErrorKind::Model) => Self::ModelFile(text),
             _ => Self::Other(text),
         }
     }
 }
-
-impl From<conform::Error> for Failure {
-    fn from(error: conform::Error) -> Self {
-        let text = error.written_for(FrontEnd::Python);
-        match error {
-            conform::Error::Recordings(error) => error.into(),
-            conform::Error::ModelFile { .. } => Self::ModelFile(text),
-            conform::Error::SettingCount { .. }
-            | conform::Error::SettingRange { .. }
-            | conform::Error::NotPoints
-            | conform::Error::Calibration(_) => Self::Setting(text),
-            conform::Error::Abstraction(error) => error.into(),
-            _ => Self::Other(text),
-        }
-    }
-}
-
-impl From<reachtube::abstraction::Error> for Failure {
-    fn from(error: reachtube::abstraction::Error) -> Self {
-        let text = error.to_string();
-        match error {
-            reachtube::abstraction::Error::ModelFile { .. } => Self::ModelFile(text),
-            reachtube::abstraction::Error::OrderZero
-            | reachtube::abstraction::Error::UnknownModel { .. }
-            | reachtube::abstraction::Error::ExpansionPointSize { .. } => Self::Setting(text),
-            _ => Self::Other(text),
-        }
-    }
-}
-
-impl From<reachtube::identify::Error> for Failure {
-    fn from(error: reachtube::identify::Error) -> Self {
-        let text = error.to_string();
-        match error {
-            reachtube::identify::Error::Recordings(error) => error.into(),
-            reachtube::identify::Error::GainCount { .. }
-            | reachtube::identify::Error::Gain { .. }
-            | reachtube::identify::Error::JointNames { .. } => Self::Setting(text),
-            _ => Self::Other(text),
-        }
-    }
-}
-
-impl From<reachtube::verify::Error> for Failure {
-    fn from(error: reachtube::verify::Error) -> Self {
-        use reachtube::verify::Error;
-        match error {
-            Error::Conform(error) => error.into(),
-            Error::Recordings(error) => error.into(),
-            Error::Robot(error) => error.into(),
-            Error::File(error) => error.into(),
-            error => Self::Setting(error.to_string()),
-        }
-    }
-}
-
-impl From<RobotError> for Failure {
-    fn from(error: RobotError) -> Self {
-        let text = error.to_string();
-        match error {
-            RobotError::Setting { .. } | RobotError::NotALock { .. } => Self::Setting(text),
-            _ => Self::Other(text),
-        }
-    }
-}
-
-impl From<reachtube::pipeline::Error> for Failure {
-    fn from(error: reachtube::pipeline::Error) -> Self {
-        use reachtube::pipeline::Error;
-        match error {
-            Error::Identify(error) => (*error).into(),
-            Error::Conform(error) => (*error).into(),
-            Error::Robot(error) => (*error).into(),
-            Error::Abstraction(error) => (*error).into(),
-            Error::Verify(error) => (*error).into(),
-            // Keys of a file of choices are arguments here.
-            Error::HeldOut { .. } | Error::NothingLeft => {
-                Self::Setting(error.to_string().replacen("held-out", "held_out", 1))
-            }
-            Error::Settings { .. } | Error::Choice { .. } => Self::Setting(error.to_string()),
-            error => Self::Other(error.to_string()),
-        }
-    }
-}
-
-/// Errors that have no class of their own in Python.
-macro_rules! others {
-    ($($error:ty),* $(,)?) => {
-        $(impl From<$error> for Failure {
-            fn from(error: $error) -> Self {
-                Self::Other(error.to_string())
-            }
-        })*
-    };
-}
-
-impl From<reachtube::Error> for Failure {
-    fn from(error: reachtube::Error) -> Self {
-        Self::Other(error.written_for(FrontEnd::Python))
-    }
-}
-
-impl From<reachtube::page::Error> for Failure {
-    fn from(error: reachtube::page::Error) -> Self {
-        match error {
-            reachtube::page::Error::Conform(error) => error.into(),
-            error => Self::Other(error.to_string()),
-        }
-    }
-}
-
-others!(reachtube::reach::ReachError, reachtube_files::Error, reachtube_logs::Error,);

@@ -175,7 +175,7 @@ impl NativeFold {
             fold.take(row.0, &entry, read)?;
             Ok(summary)
         });
-        let taken: product::Result<Summary> = taken;
+        let taken: Result<Summary, product::Error> = taken;
         let (summary, defects) = match taken.map_err(|e| Failure::from(e).raised(py))? {
             Ok(summary) => (Some(summary), vec![]),
             Err(defects) => (None, defects),

@@ -180,5 +180,12 @@ pub enum RecordsError {
     Changed,
 }
 
+reachtube_files::kinds!(Error {
+    [File | Robot] => inner,
+    ModelFile | Records => Model,
+    SingularMassMatrix | Reach => NoAnswer,
+    _ => Setting,
+});
+
 /// A result of this crate.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

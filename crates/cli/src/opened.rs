@@ -49,7 +49,11 @@ impl OpenedCheck {
         if let Some(given) = args.torque.filter(|given| *given != expected) {
             let [given, model] =
                 [given, expected].map(|torque| format!("{torque:?}").to_lowercase());
-            return Err(Error::OtherTorque { given, model });
+            return Err(Error::setting(format!(
+                "--torque {given}, but the model was found with --torque {model}, and its input \
+                 set covers that only; give --torque {model}, or run conform on recordings with \
+                 --torque {given}"
+            )));
         }
         let job = check_job(model, setup, &args.data, args.max_gap)?
             .suites(&args.suites)

@@ -1,11 +1,12 @@
 //! Results on standard output, notes on standard error. Both have colours on a terminal, unless
 //! `NO_COLOR` is set.
 
-use std::io::{ErrorKind, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anstyle::{AnsiColor, Style};
 use reachtube::{printable, write};
+use reachtube_files::ErrorKind;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
@@ -49,7 +50,7 @@ pub(crate) fn write_out(bytes: &[u8]) -> Result<()> {
 
 fn written(mut out: impl Write, bytes: &[u8]) -> Result<()> {
     match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::Output(error)),
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::output(error)),
         _ => Ok(()),
     }
 }
@@ -137,7 +138,7 @@ pub(crate) fn error(text: &str) {
 }
 
 /// Prints an error as one line of JSON on standard error.
-pub(crate) fn json_error(error: &str, kind: &str, exit_code: u8) {
+pub(crate) fn json_error(error: &str, kind: ErrorKind, exit_code: u8) {
     let object = serde_json::json!({ "error": error, "kind": kind, "exit_code": exit_code });
     let _ = writeln!(std::io::stderr(), "{object}");
 }

@@ -43,7 +43,11 @@ fn usage_error(error: clap::Error, command: &mut Command, given: Option<&ArgMatc
     let key = option.trim_start_matches("--").split('=').next().unwrap_or_default();
     let is_model = given.and_then(ArgMatches::subcommand_name) == Some("model");
     if is_model && CHOICES.contains(&key) {
-        return Error::InSettings { key: key.into() };
+        let problem = format!(
+            "--{key} is no option, but {key} is a key of the settings: write it to a file, and \
+             give the file with --settings; choices.toml, which this command writes, has all keys"
+        );
+        return Error::Given(reachtube_files::ErrorKind::Usage, problem);
     }
     Error::Usage(error.format(command))
 }

@@ -23,9 +23,6 @@ impl VirtualRobotArguments {
     pub(crate) fn parameters(&self) -> Result<VirtualRobotParameters> {
         let Some(path) = &self.parameters else { return Ok(VirtualRobotParameters::default()) };
         let text = reachtube_files::read_text(path, REMEDY)?;
-        toml::from_str(&text).map_err(|error| Error::SettingsSyntax {
-            path: path.clone(),
-            message: error.to_string(),
-        })
+        toml::from_str(&text).map_err(|error| Error::settings_file(path, error))
     }
 }

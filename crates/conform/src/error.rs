@@ -131,6 +131,14 @@ pub enum Error {
     Reach(#[from] ReachError),
 }
 
+reachtube_files::kinds!(Error {
+    [Recordings | Abstraction | File | Robot] => inner,
+    ModelFile => Model,
+    Changed | Healthy | TooFewHealthy => Recordings,
+    SettingCount | SettingRange | NotPoints | Calibration => Setting,
+    _ => NoAnswer,
+});
+
 impl Error {
     /// Returns the settings that help.
     #[must_use]
@@ -182,4 +190,4 @@ fn range(low: f64, high: f64) -> String {
 }
 
 /// A result of this crate.
-pub type Result<T, E = Error> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

@@ -49,7 +49,7 @@ pub use data::problem::{Keep, Problem};
 pub use data::recordings::Recordings;
 pub use data::settings::{self, Noise, Settings};
 pub use data::setup::Setup;
-pub use error::{Error, Result};
+pub use error::Error;
 pub use fit::fit::fit;
 pub use fit::group::{FitSettings, Group};
 pub use job::{Basis, Job};

@@ -55,5 +55,7 @@ pub enum Error {
     },
 }
 
+crate::kinds!(Error { _ => File });
+
 /// A result of this crate.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

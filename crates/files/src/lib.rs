@@ -5,6 +5,7 @@
 //! - [`Overwrite`] decides which existing files may be replaced.
 //! - [`json`] reads and writes versioned files.
 //! - [`Journal`] keeps what a long job has finished.
+//! - [`Kind`] says what an error is about.
 //! - [`read`] and [`read_text`] read a file with an error that names it, and [`bytes`] without.
 //!
 //! # Examples
@@ -24,6 +25,7 @@ mod digest;
 mod error;
 mod journal;
 pub mod json;
+mod kind;
 mod names;
 mod overwrite;
 mod printable;
@@ -33,6 +35,7 @@ pub mod write;
 pub use digest::hex;
 pub use error::Error;
 pub use journal::Journal;
+pub use kind::{ErrorKind, Kind};
 pub use names::distinct_names;
 pub use overwrite::{MARK, Overwrite, TOOL};
 pub use printable::printable;

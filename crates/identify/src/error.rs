@@ -207,7 +207,7 @@ pub enum Error {
     Recordings(#[from] reachtube_recordings::Error),
     /// A log in MCAP or rosbag2 could not be read.
     #[error(transparent)]
-    Log(reachtube_logs::Error),
+    Log(#[from] reachtube_logs::Error),
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
@@ -216,15 +216,12 @@ pub enum Error {
     Robot(#[from] reachtube_robot::RobotError),
 }
 
-impl From<reachtube_logs::Error> for Error {
-    fn from(error: reachtube_logs::Error) -> Self {
-        match error {
-            reachtube_logs::Error::Recordings(error) => Self::Recordings(error),
-            reachtube_logs::Error::File(error) => Self::File(error),
-            error => Self::Log(error),
-        }
-    }
-}
+reachtube_files::kinds!(Error {
+    [Recordings | Log | File | Robot] => inner,
+    NoCsvFile | NotHeldOut | NoPose | TooShort | SampledTooSlowly | NoMotion => Recordings,
+    Undetermined | ImpossibleRobot | NoPhysicalLinks => NoAnswer,
+    _ => Setting,
+});
 
 /// Rounds a time \[s\] to the microsecond.
 fn microseconds(time: f64) -> f64 {

@@ -1,4 +1,3 @@
-use reachtube_conform::result::FrontEnd;
 use thiserror::Error;
 
 /// Why a job could not be done. A model that is not conformant is no error but a value, as in
@@ -38,19 +37,10 @@ pub enum Error {
     Page(#[from] reachtube_page::Error),
 }
 
-impl Error {
-    /// Returns what is wrong, what to do, and the settings that do it as users of a front end write
-    /// them.
-    #[must_use]
-    pub fn written_for(&self, front_end: FrontEnd) -> String {
-        match self {
-            Self::Conform(error) | Self::Page(reachtube_page::Error::Conform(error)) => {
-                error.written_for(front_end)
-            }
-            error => error.to_string(),
-        }
-    }
-}
+reachtube_files::kinds!(Error {
+    [File | Recordings | Identify | Abstraction | Conform | Robot | Page] => inner,
+    _ => Setting,
+});
 
 /// A result of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;

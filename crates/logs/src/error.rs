@@ -124,5 +124,12 @@ pub enum Error {
     NoRun(String),
 }
 
+reachtube_files::kinds!(Error {
+    [File | Recordings] => inner,
+    Format | Damaged => File,
+    NoTopic | SeveralTopics | TopicType | Setting | Intervals => Setting,
+    _ => Recordings,
+});
+
 /// A result of this crate.
-pub type Result<T, E = Error> = std::result::Result<T, E>;
+pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

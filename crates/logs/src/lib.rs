@@ -41,7 +41,7 @@ mod seconds;
 mod series;
 
 pub use cut::{Cut, Cutting};
-pub use error::{Error, Result};
+pub use error::Error;
 pub use found::LogFiles;
 pub use inspect::inspect_logs;
 pub use intervals::Intervals;

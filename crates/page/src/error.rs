@@ -83,5 +83,11 @@ pub enum Error {
     Io(#[from] std::io::Error),
 }
 
+reachtube_files::kinds!(Error {
+    [Conform] => inner,
+    Io => File,
+    _ => NoAnswer,
+});
+
 /// A result of this crate.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

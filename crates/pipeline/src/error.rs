@@ -58,7 +58,7 @@ pub enum Error {
     },
     /// A recording that is to be held out does not exist.
     #[error(
-        "held-out = \"{name}\" is no motion of the recordings; the motions are {}",
+        "--held-out \"{name}\" is no motion of the recordings; the motions are {}",
         motions.join(", ")
     )]
     HeldOut {
@@ -68,7 +68,7 @@ pub enum Error {
         motions: Vec<String>,
     },
     /// Every motion is held out.
-    #[error("held-out names every motion; leave one at least for the sets")]
+    #[error("--held-out names every motion; leave one at least for the sets")]
     NothingLeft,
     /// The recordings allow no sets at any horizon.
     #[error("no sets were found, even over {shortest} s: {reason}")]
@@ -93,6 +93,13 @@ pub enum Error {
         horizon: f64,
     },
 }
+
+reachtube_files::kinds!(Error {
+    [Identify | Conform | Robot | Abstraction | Verify | File] => inner,
+    Settings | Choice | HeldOut | NothingLeft => Setting,
+    NoSets => NoAnswer,
+    _ => Recordings,
+});
 
 /// A result of this crate.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

@@ -18,7 +18,7 @@ const COMPARED: usize = 400;
 
 /// What a recording is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum MotionType {
     /// The robot rests.
     Rest,
     /// One joint moves.
@@ -27,7 +27,7 @@ pub(crate) enum Kind {
     Motion,
 }
 
-impl Kind {
+impl MotionType {
     /// Returns the kind of a recording.
     pub(crate) fn of(run: &Run) -> Self {
         let n = run.joints;
@@ -113,9 +113,9 @@ mod tests {
 
     #[test]
     fn recordings_are_sorted_by_what_moves() {
-        assert_eq!(Kind::of(&run([1e-3, 1e-3], 0.0)), Kind::Rest);
-        assert_eq!(Kind::of(&run([0.5, 0.02], 0.0)), Kind::OneJoint);
-        assert_eq!(Kind::of(&run([0.5, 0.3], 0.0)), Kind::Motion);
+        assert_eq!(MotionType::of(&run([1e-3, 1e-3], 0.0)), MotionType::Rest);
+        assert_eq!(MotionType::of(&run([0.5, 0.02], 0.0)), MotionType::OneJoint);
+        assert_eq!(MotionType::of(&run([0.5, 0.3], 0.0)), MotionType::Motion);
     }
 
     #[test]

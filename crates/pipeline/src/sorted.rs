@@ -16,7 +16,7 @@ use crate::chooser::Chooser;
 use crate::error::{Error, Result};
 use crate::findings::warning;
 use crate::held_out::Recording;
-use crate::kinds::{Kind, motions};
+use crate::kinds::{MotionType, motions};
 use crate::steps::data_digest;
 use crate::windows::Origin;
 
@@ -52,16 +52,16 @@ impl Sorted {
         settings: &PrepareSettings,
     ) -> Result<Self> {
         let (raw, copies) = without_copies(read_logs(&given.data, robot, settings)?);
-        let kinds: Vec<Kind> = raw.iter().map(|log| Kind::of(&log.run)).collect();
-        let count = |kind: Kind| kinds.iter().filter(|other| **other == kind).count();
-        let of = |kind: Kind| -> Vec<&Arc<RawLog>> {
+        let kinds: Vec<MotionType> = raw.iter().map(|log| MotionType::of(&log.run)).collect();
+        let count = |kind: MotionType| kinds.iter().filter(|other| **other == kind).count();
+        let of = |kind: MotionType| -> Vec<&Arc<RawLog>> {
             let pairs = raw.iter().zip(&kinds).filter(|(_, other)| **other == kind);
             pairs.map(|(log, _)| log).collect()
         };
         let entry = |log: &Arc<RawLog>| LogEntry::Recording(Arc::clone(log));
-        let moving = of(Kind::Motion);
+        let moving = of(MotionType::Motion);
         if moving.is_empty() {
-            let (rest, one) = (count(Kind::Rest), count(Kind::OneJoint));
+            let (rest, one) = (count(MotionType::Rest), count(MotionType::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
         let names = motions(&moving.iter().map(|log| &***log).collect::<Vec<&RawLog>>());
@@ -72,8 +72,8 @@ impl Sorted {
             format!("{} recordings", raw.len()),
             format!(
                 "{} at rest, {} of one joint at a time, {} of several joints ({})",
-                count(Kind::Rest),
-                count(Kind::OneJoint),
+                count(MotionType::Rest),
+                count(MotionType::OneJoint),
                 moving.len(),
                 counted(distinct, "motion")
             ),
@@ -81,8 +81,8 @@ impl Sorted {
         let recordings = moving.iter().zip(names);
         let recordings = recordings.map(|(log, motion)| Recording { log: Arc::clone(log), motion });
         let motions = recordings.collect();
-        let [rest, one_joint] =
-            [Kind::Rest, Kind::OneJoint].map(|kind| of(kind).into_iter().map(entry).collect());
+        let [rest, one_joint] = [MotionType::Rest, MotionType::OneJoint]
+            .map(|kind| of(kind).into_iter().map(entry).collect());
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
         let findings =
             raw.iter().flat_map(|log| log.moved.iter().map(|text| warning(Code::TurnsMoved, text)));
@@ -200,7 +200,7 @@ pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, Origin> {
     let origin = |log: &RawLog, motion| Origin {
         motion,
         sha256: log.run.sha256.clone(),
-        at_rest: Kind::of(&log.run) == Kind::Rest,
+        at_rest: MotionType::of(&log.run) == MotionType::Rest,
     };
     logs.map(|(log, motion)| (log.name.clone(), origin(log, motion))).collect()
 }

@@ -40,6 +40,12 @@ pub enum Error {
     },
 }
 
+reachtube_files::kinds!(Error {
+    [File] => inner,
+    Defects => Recordings,
+    _ => Setting,
+});
+
 /// Number of suites that an error lists.
 const LISTED: usize = 20;
 

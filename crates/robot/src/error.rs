@@ -98,3 +98,8 @@ pub enum RobotError {
         text: String,
     },
 }
+
+reachtube_files::kinds!(RobotError {
+    Setting | NotALock => Setting,
+    _ => Robot,
+});

@@ -121,3 +121,10 @@ pub enum Error {
     #[error(transparent)]
     Conform(#[from] reachtube_conform::Error),
 }
+
+reachtube_files::kinds!(Error {
+    [File | Robot | Recordings | Conform] => inner,
+    Mesh | NoCapsules => Robot,
+    OtherTimes | SingleSample => Recordings,
+    _ => Setting,
+});

@@ -53,7 +53,7 @@ pub(crate) fn run(args: &Arguments, command: Command) -> Result<Outcome> {
 fn write_all(folder: &Path, command: Command) -> Result<()> {
     let of = |(shell, place)| (folder.join(place), script(shell, command.clone()).into_bytes());
     let mut files: Vec<(PathBuf, Vec<u8>)> = PLACES.map(of).into();
-    let pages = man::pages(command).map_err(Error::Output)?;
+    let pages = man::pages(command).map_err(Error::output)?;
     let manual = folder.join("man/man1");
     files.extend(pages.into_iter().map(|(name, page)| (manual.join(name), page)));
     output::claim_all(files.iter().map(|(path, _)| path))?;

@@ -97,13 +97,13 @@ fn check_size(args: &Arguments, joints: usize) -> Result<()> {
     if samples <= args.most_samples as f64 {
         return Ok(());
     }
-    Err(Error::TooManySamples {
-        period: args.period,
-        rate: args.rate,
-        samples,
-        megabytes: samples * (1 + 3 * joints) as f64 * BYTES_PER_VALUE / 1e6,
-        most: args.most_samples,
-    })
+    let Arguments { period, rate, most_samples, .. } = args;
+    let megabytes = samples * (1 + 3 * joints) as f64 * BYTES_PER_VALUE / 1e6;
+    Err(Error::setting(format!(
+        "--period {period} s at --rate {rate} Hz gives {samples:.0} samples, about {megabytes:.0} \
+         MB of CSV, but at most {most_samples} are allowed; shorten the period, lower the rate, or \
+         allow more with --most-samples"
+    )))
 }
 
 fn settings(args: &Arguments) -> ExcitationSettings {

@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use reachtube::recordings::{DataSet, Inspection, JointSummary, LoggedOptions, RunGroup, inspect};
+use reachtube::recordings::{
+    DataSet, Inspection, JointSummary, LoggedOptions, Refusal, RunGroup, inspect,
+};
+use reachtube_files::ErrorKind;
 use reachtube_logs::{LogFiles, inspect_logs};
 use reachtube_robot::Robot;
 
@@ -97,7 +100,8 @@ fn outcome(inspection: Inspection) -> Result<Outcome> {
     if inspection.refused.is_empty() {
         Ok(Outcome::Done)
     } else {
-        Err(Error::Refused { refused: inspection.refused })
+        let lines: Vec<String> = inspection.refused.iter().map(Refusal::to_string).collect();
+        Err(Error::Given(ErrorKind::Recordings, lines.join("\n")))
     }
 }
 
@@ -108,7 +112,11 @@ fn kinds(args: &Arguments, joints: usize) -> Result<Vec<JointKind>> {
     if kinds.len() == joints {
         return Ok(kinds);
     }
-    Err(Error::JointCount { robot: name.clone(), joints: kinds.len(), recorded: joints })
+    Err(Error::setting(format!(
+        "robot {name} has {} joints, but the recordings have {joints}; name the robot that was \
+         recorded",
+        kinds.len()
+    )))
 }
 
 /// Returns the result of `inspect`, with one table per suite.

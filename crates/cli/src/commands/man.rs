@@ -33,7 +33,7 @@ pub(crate) fn run(args: &Arguments, command: Command) -> Result<Outcome> {
     if args.markdown {
         output::write_out(reference::markdown(built(command)).as_bytes())?;
     } else if let Some(folder) = &args.out {
-        let pages = pages(command).map_err(Error::Output)?;
+        let pages = pages(command).map_err(Error::output)?;
         let paths: Vec<PathBuf> = pages.iter().map(|(name, _)| folder.join(name)).collect();
         output::claim_all(&paths)?;
         for ((_, page), path) in pages.iter().zip(&paths) {
@@ -41,7 +41,7 @@ pub(crate) fn run(args: &Arguments, command: Command) -> Result<Outcome> {
         }
         output::note(&format!("wrote {} pages to {}", paths.len(), folder.display()));
     } else {
-        output::write_out(&page(built(command)).map_err(Error::Output)?)?;
+        output::write_out(&page(built(command)).map_err(Error::output)?)?;
     }
     Ok(Outcome::Done)
 }

@@ -13,7 +13,7 @@ use reachtube::write;
 
 use crate::commands::conform::GROUPS;
 use crate::data_arguments::TORQUES;
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_ROBOT, NO_TORQUE, Result};
 use crate::global::global;
 use crate::lock_arguments::LockArguments;
 use crate::log_files::LogArguments;
@@ -81,12 +81,15 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let choices = choices(args)?;
-    let name = choices.robot.clone().ok_or(Error::NoRobot)?;
+    let name = choices.robot.clone().ok_or_else(|| Error::setting(NO_ROBOT))?;
     let lock: Vec<Lock> = choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
     let (robot, impossible) = Robot::load_to_identify(&name, &lock)?;
-    let torque = choices.torque.ok_or(Error::NoTorque)?;
+    let torque = choices.torque.ok_or_else(|| Error::setting(NO_TORQUE))?;
     if choices.data.is_empty() {
-        return Err(Error::NoData);
+        return Err(Error::setting(
+            "no recordings are given; name some with --data, or with data = [..] in the settings \
+             file",
+        ));
     }
     let files = ["model.json", "robot.toml", "choices.toml"].map(|file| args.out.join(file));
     output::claim_all(&files)?;

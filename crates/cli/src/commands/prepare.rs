@@ -119,10 +119,14 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 /// Returns the error of windows that no recording fills.
 fn nothing_left(args: &Arguments, logs: &[PreparedLog]) -> Error {
     let duration = |log: &PreparedLog| log.len().saturating_sub(1) as f64 * log.step;
-    Error::NothingPrepared {
-        window: args.window,
-        longest: logs.iter().map(duration).fold(0.0, f64::max),
-    }
+    let longest = logs.iter().map(duration).fold(0.0, f64::max);
+    Error::setting(match args.window {
+        Some(window) => format!(
+            "no recording is left: the windows are {window} s long, but the longest prepared \
+             recording lasts {longest:.3} s; give a shorter --window"
+        ),
+        None => "no recording is left: no log has two samples or more; give longer --data".into(),
+    })
 }
 
 fn settings(args: &Arguments) -> PrepareSettings {

@@ -52,7 +52,10 @@ pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let joints = robot.joint_count();
     if !args.expansion.is_empty() && args.expansion.len() != joints {
         let unit = JointKind::units(&robot.kinds(), JointKind::position_unit);
-        return Err(Error::PositionCount { given: args.expansion.len(), joints, unit });
+        let given = args.expansion.len();
+        return Err(Error::setting(format!(
+            "--expansion lists {given}; give {joints} positions in {unit}, one per joint"
+        )));
     }
     let at = expansion_point(&args.expansion, &robot)?;
     let physicality = robot.check_physical()?;

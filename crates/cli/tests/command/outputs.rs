@@ -111,7 +111,7 @@ fn results_and_errors_are_json() {
             if arguments.starts_with("robot") || arguments.starts_with("conform") {
                 "robot"
             } else {
-                "recordings"
+                "file"
             },
             &["none"],
         );

@@ -9,7 +9,7 @@ use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use reachtube_logs::{Log, LogOptions, Result};
+use reachtube_logs::{Error, Log, LogOptions};
 
 pub(crate) const JOINT_STATE: &str = "sensor_msgs/msg/JointState";
 pub(crate) const TOPIC: &str = "/joint_states";
@@ -217,7 +217,7 @@ pub(crate) fn options() -> LogOptions {
     }
 }
 
-pub(crate) fn read(path: &Path) -> Result<Log> {
+pub(crate) fn read(path: &Path) -> Result<Log, Error> {
     Log::read(path, &options())
 }
 

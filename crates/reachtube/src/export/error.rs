@@ -139,3 +139,10 @@ pub enum ExportError {
         robot: String,
     },
 }
+
+reachtube_files::kinds!(ExportError {
+    [Conform | Robot] => inner,
+    SeparateGravity | NotPhysical | Unreadable => Robot,
+    EndsEarly | NoTime | NotUniform => Recordings,
+    _ => Setting,
+});

@@ -1,6 +1,6 @@
 //! What would decide a question that is open.
 
-use reachtube_conform::{Result, SuiteReach, Tube, UncertaintySets, reach};
+use reachtube_conform::{Error, SuiteReach, Tube, UncertaintySets, reach};
 use reachtube_reach::Hyperrectangle;
 use serde::Serialize;
 
@@ -10,6 +10,8 @@ use crate::stop::rule::StopRule;
 use crate::verdict::clearance::{Clearance, clearances};
 use crate::verdict::question::Question;
 use crate::verdict::stops::MotionStops;
+
+type Result<T> = std::result::Result<T, Error>;
 
 /// Numbers of parts of a step that are tried.
 const PARTS: [u32; 2] = [64, 512];

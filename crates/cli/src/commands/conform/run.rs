@@ -25,10 +25,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::claim(&report_files::page_in(folder))?;
     }
     let bar = Progress::new();
-    let mut answer = job.run(&bar).map_err(|error| match Error::from(error) {
-        Error::Library(error) if args.horizon.is_some() => Error::Windows(error),
-        error => error,
-    })?;
+    let written = |error| Error::from(error).written_for(front_end(args));
+    let mut answer = job.run(&bar).map_err(written)?;
     drop(bar);
     if let Some(preparation) = preparation {
         answer.model = answer.model.with_preparation(preparation);

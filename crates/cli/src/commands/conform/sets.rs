@@ -176,7 +176,12 @@ fn numbers(
     joints: usize,
 ) -> Result<Vec<f64>> {
     let states = 2 * joints;
-    let wrong = |problem: String| Error::StateValues { option, problem, words, states };
+    let wrong = |problem: String| {
+        Error::setting(format!(
+            "{option}: {problem}; give {words}2 numbers (positions, velocities), or {states} (one \
+             per state)"
+        ))
+    };
     let parse = |text: &str| {
         text.trim().parse::<f64>().map_err(|_| wrong(format!("\"{text}\" is not a number")))
     };

@@ -5,7 +5,7 @@ use reachtube::conform::{Basis, Settings};
 use reachtube_robot::Robot;
 
 use super::arguments::Arguments;
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_TORQUE, Result};
 use crate::expansion::expansion_point;
 
 /// Returns the robot, or the model in the file that `--abstraction` names.
@@ -23,7 +23,7 @@ pub(super) fn settings(args: &Arguments, robot: &Robot) -> Result<Settings> {
         expansion_point: expansion_point(&args.expansion, robot)?,
         until: args.data.until,
         gap_limit: args.data.max_gap.into(),
-        ..Settings::new(args.data.torque.ok_or(Error::NoTorque)?, joints)
+        ..Settings::new(args.data.torque.ok_or_else(|| Error::setting(NO_TORQUE))?, joints)
     };
     let settings = args.sets.settings(usual, joints)?;
     settings.validate(joints)?;

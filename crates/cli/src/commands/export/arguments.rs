@@ -15,6 +15,10 @@ use crate::opened::OpenedCheck;
 use crate::option_values::{Choices, choice, seconds, trimmed};
 use crate::output;
 
+/// An export has neither a model nor a robot that it could take.
+const NO_MODEL: &str = "only mjcf and urdf take --robot; name a model that `model` or `conform` \
+                        wrote with --model";
+
 const HELP: &str = "\
 Tools, what they can mean, and what they cannot:
   cora        every model; the recorded input at equally spaced samples, U changing at any time
@@ -151,7 +155,10 @@ pub(super) fn refuse_unused(args: &Arguments) -> Result<()> {
         ("lock", !args.lock.lock.is_empty(), has_locks && !matches!(to, Target::SaraShield)),
     ];
     match options.into_iter().find(|(_, is_given, is_used)| *is_given && !is_used) {
-        Some((option, ..)) => Err(Error::NotForTool { option, tool: to.name() }),
+        Some((option, ..)) => Err(Error::setting(format!(
+            "--{option} has no effect on an export to {}; leave it out",
+            to.name()
+        ))),
         None => Ok(()),
     }
 }
@@ -169,14 +176,19 @@ pub(super) fn load_robot(args: &Arguments) -> Result<Robot> {
     match (&args.robot, &args.model) {
         (Some(robot), _) => args.lock.load(robot),
         (None, Some(model)) => Ok(Model::open(model)?.1.robot().clone()),
-        (None, None) => Err(Error::NoModel),
+        (None, None) => Err(Error::setting(NO_MODEL)),
     }
 }
 
 /// Opens the model over the recordings; `tool` names what it is for.
 pub(super) fn open(args: &Arguments, tool: &str) -> Result<OpenedCheck> {
-    let model = args.model.as_ref().ok_or(Error::NoModel)?;
-    let no_input = || Error::NoRecordedInput { tool: tool.into() };
+    let model = args.model.as_ref().ok_or_else(|| Error::setting(NO_MODEL))?;
+    let no_input = || {
+        Error::setting(format!(
+            "an export to {tool} needs the recorded input; name the recordings with --data and the \
+             suites with --suites"
+        ))
+    };
     let data = args.data.clone().ok_or_else(no_input)?;
     let (model, setup) = Model::open(model)?;
     let data = DataArguments {

@@ -35,7 +35,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         _ => 0,
     };
     if args.update.len() > most {
-        return Err(Error::NothingToUpdate);
+        return Err(Error::setting(
+            "--update is for one file with --to urdf, and for files of the shield with --to \
+             sara-shield; leave it out",
+        ));
     }
     refuse_unused(args)?;
     let updated = |robot: &Robot| match args.update.first() {

@@ -10,14 +10,14 @@ use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use super::arguments::Arguments;
 use super::summary::summary;
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_ROBOT, Result};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let (settings, folder) = settings(args)?;
-    let name = settings.robot.clone().ok_or(Error::NoRobot)?;
+    let name = settings.robot.clone().ok_or_else(|| Error::setting(NO_ROBOT))?;
     let name = from_folder(&name, args, &folder);
     let robot = args.lock.load_to_identify(&name)?;
     check_urdf(args, &name)?;
@@ -56,11 +56,18 @@ fn marked(toml: &str) -> String {
 fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
     let Some(urdf) = &args.urdf else { return Ok(()) };
     if Path::new(robot).extension().is_none_or(|extension| extension != "urdf") {
-        return Err(Error::NotUrdf { robot: robot.into() });
+        return Err(Error::setting(format!(
+            "--urdf writes the identified values into the robot's own URDF, but {robot} is not a \
+             URDF file; give --robot a URDF file, or drop --urdf"
+        )));
     }
     let companion = urdf.with_extension("toml");
     if args.out.as_ref() == Some(&companion) {
-        return Err(Error::CompanionTaken { path: companion });
+        return Err(Error::setting(format!(
+            "--out {}: --urdf writes motors and friction to the same file; choose another name for \
+             one of them",
+            companion.display()
+        )));
     }
     Ok(())
 }

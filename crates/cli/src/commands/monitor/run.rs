@@ -8,6 +8,7 @@ use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
 use reachtube::recordings::{DataSet, SampleError};
 use reachtube::robot::Robot;
+use reachtube_files::ErrorKind;
 
 use crate::commands::monitor::arguments::Arguments;
 use crate::commands::monitor::events::Events;
@@ -231,5 +232,5 @@ fn rounded(step: f64) -> f64 {
 }
 
 fn wrong(line: u64, problem: &str) -> Error {
-    Error::Sample { line, problem: problem.into() }
+    Error::Given(ErrorKind::Recordings, format!("standard input:{line}: {problem}"))
 }
