@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use reachtube::abstraction::ExpansionPoint;
-use reachtube::conform::result::FrontEnd;
 use reachtube::conform::{
     Answer, Basis, CheckJob, FitSettings, Group, Job, Keep, Model, Opened, Settings, Setup,
     SuiteReach,
 };
+use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
 use reachtube::{Progress, Torque, write};
 use serde_json::{Map, Value};

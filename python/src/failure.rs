@@ -5,7 +5,7 @@ use std::path::{MAIN_SEPARATOR, Path};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use reachtube::conform;
-use reachtube::conform::result::FrontEnd;
+use reachtube::finding::FrontEnd;
 use reachtube::recordings::{self, Defect};
 use reachtube_files::{ErrorKind, Kind};
 

@@ -1,8 +1,8 @@
 //! What an answer says, as users of Python write settings.
 
 use pyo3::prelude::*;
-use reachtube::conform::result::{FrontEnd, Report};
-use reachtube::conform::{Finding, Model};
+use reachtube::conform::Model;
+use reachtube::finding::{Finding, FrontEnd, Report};
 use serde_json::{Value, json};
 
 use crate::failure::{Failure, Result};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use reachtube::conform::Model;
-use reachtube::conform::result::FrontEnd;
+use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, built_pages, page_files};
 use reachtube::pipeline::{Built, Choice, Choices, Cut, build};
 use reachtube::{Progress, Robot};

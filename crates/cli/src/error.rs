@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use reachtube::conform::result::FrontEnd;
+use reachtube::finding::FrontEnd;
 use reachtube_files::{ErrorKind, Kind};
 use thiserror::Error;
 

@@ -1,11 +1,11 @@
 //! A model and the recordings it is compared with.
 
 use reachtube::Model;
-use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::conform::{
     self, Check, Keep, Notion, Problem, Setup, SuiteReach, Tube, check, reach,
 };
 use reachtube::export::ExportCase;
+use reachtube::finding::{FrontEnd, Summary};
 use reachtube::pipeline::check_job;
 
 use crate::data_arguments::{DataArguments, ModelArguments};

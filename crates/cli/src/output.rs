@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anstyle::{AnsiColor, Style};
-use reachtube::{printable, write};
+use reachtube::finding::printable;
+use reachtube::write;
 use reachtube_files::ErrorKind;
 use serde::Serialize;
 

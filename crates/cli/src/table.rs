@@ -1,8 +1,8 @@
 //! Tables.
 
-use reachtube::conform::result::Table;
+use reachtube::finding::Table;
+use reachtube::finding::printable;
 use reachtube::page::TextTable;
-use reachtube::printable;
 
 /// Returns the text of a cell on one line, so that no name can pretend to be a row of its own.
 fn one_line(text: &str) -> String {

@@ -14,8 +14,8 @@ use crate::model::file::Model;
 use crate::next_motion::without_motion::LeftOut;
 use crate::progress::Progress;
 use crate::reach::{SuiteReach, reach};
-use crate::result::finding::Finding;
-use crate::result::report::Report;
+use crate::result::findings;
+use reachtube_finding::{Finding, Report};
 
 /// The answer of a [`Job`](crate::Job): a model, the recordings it was made from, and all that was
 /// found.
@@ -98,7 +98,7 @@ impl Answer {
     pub fn findings(&self) -> Vec<Finding> {
         let notes = self.problem.recordings().notes.iter();
         let mut findings = self.model.findings();
-        findings.extend(notes.map(|note| Finding::recordings(note)));
+        findings.extend(notes.map(|note| findings::note(note)));
         findings
     }
 

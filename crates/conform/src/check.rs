@@ -13,9 +13,10 @@ use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
 use crate::plausibility::friction_warning;
 use crate::result::code::Code;
-use crate::result::finding::Finding;
+use crate::result::findings;
 use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
+use reachtube_finding::Finding;
 
 /// Findings about the recordings, which come last.
 const NOTED: [Code; 5] = [
@@ -98,14 +99,14 @@ impl Check {
         let trust = is_held_out.then(|| Trust::of_check(recordings, &verdict));
         let rates = is_held_out.then(|| Rates::new(recordings, &verdict));
         let mut noted: Vec<Finding> =
-            recordings.notes.iter().map(|note| Finding::recordings(note)).collect();
-        noted.extend(Finding::at_rest(recordings));
-        noted.extend(is_used.is_none().then(|| Finding::use_unknown(model.data.are_listed())));
+            recordings.notes.iter().map(|note| findings::note(note)).collect();
+        noted.extend(findings::at_rest(recordings));
+        noted.extend(is_used.is_none().then(|| findings::use_unknown(model.data.are_listed())));
         noted.extend(friction_warning(problem).as_ref().map(Finding::from));
         let starts_elsewhere =
             recordings.suites.iter().filter(|suite| !may_start_near(model, suite));
-        let other = other.as_ref().map(Finding::other_recordings);
-        noted.extend(starts_elsewhere.map(|suite| Finding::other_start(&suite.entry.name)));
+        let other = other.as_ref().map(findings::other_recordings);
+        noted.extend(starts_elsewhere.map(|suite| findings::other_start(&suite.entry.name)));
         Self {
             notes: noted.iter().map(|finding| finding.text.clone()).collect(),
             verdict,
@@ -129,22 +130,24 @@ impl Check {
     fn with_findings(mut self, model: &Model) -> Self {
         let (verdict, kinds) = (&self.verdict, model.robot.kinds());
         let set = verdict.enclosure.set_name();
-        let mut findings = vec![Finding::verdict_of_check(verdict, &self.provenance.settings)];
-        findings.extend(Finding::vacuous(model));
-        findings.extend(Finding::points(verdict, model.settings.states));
+        let mut findings = vec![findings::verdict_of_check(verdict, &self.provenance.settings)];
+        findings.extend(findings::vacuous(model));
+        findings.extend(findings::points(verdict, model.settings.states));
         let furthest = verdict.points.as_ref().and_then(|points| points.worst.as_ref());
-        findings.extend(furthest.map(|worst| Finding::furthest_point(worst, &kinds)));
+        findings.extend(furthest.map(|worst| findings::furthest_point(worst, &kinds)));
         let worst = verdict.violations.worst.as_ref();
-        findings.extend(worst.map(|worst| Finding::furthest_value(worst, &kinds)));
+        findings.extend(worst.map(|worst| findings::furthest_value(worst, &kinds)));
         findings.extend(verdict.lost.iter().map(Finding::from));
-        findings.extend(self.growth.as_ref().map(|growth| Finding::growth_needed(growth, &kinds)));
+        findings.extend(self.growth.as_ref().map(|growth| findings::growth_needed(growth, &kinds)));
         findings.push(match &self.trust {
-            Some(held_out) => Finding::next_motion(held_out, set, "left it"),
-            None => Finding::fitted_to_these(),
+            Some(held_out) => findings::next_motion(held_out, set, "left it"),
+            None => findings::fitted_to_these(),
         });
-        findings.extend(self.rates.as_ref().map(Finding::held_out_rates));
-        findings.extend(Finding::reach_of_proof(verdict, model.settings.states));
-        findings.extend(self.findings.into_iter().filter(|found| NOTED.contains(&found.code)));
+        findings.extend(self.rates.as_ref().map(findings::held_out_rates));
+        findings.extend(findings::reach_of_proof(verdict, model.settings.states));
+        let is_noted =
+            |found: &Finding| Code::of(&found.code).is_some_and(|code| NOTED.contains(&code));
+        findings.extend(self.findings.into_iter().filter(is_noted));
         self.findings = findings;
         self
     }

@@ -3,8 +3,7 @@ use std::path::PathBuf;
 use reachtube_reach::ReachError;
 use thiserror::Error;
 
-use crate::advice::{Advice, advised};
-use crate::result::front_end::{FrontEnd, Setting};
+use reachtube_finding::{Advice, FrontEnd, Setting, advised};
 
 /// Why a conformance could not be decided. A model that is not conformant is no error but a value.
 #[derive(Debug, Error)]
@@ -161,7 +160,7 @@ impl Error {
     ///
     /// ```
     /// use reachtube_conform::Error;
-    /// use reachtube_conform::result::FrontEnd;
+    /// use reachtube_finding::FrontEnd;
     ///
     /// let written = Error::Equations.written_for(FrontEnd::Python);
     /// assert!(written.ends_with("(equations=\"model\")"));

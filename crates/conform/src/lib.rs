@@ -6,12 +6,11 @@
 //! sets ([`Tube`]) of a model, and [`reach()`] returns these sets at samples and between them. A
 //! [`Job`] runs all of it, as the command does.
 //!
-//! The parts of an answer are in the modules: findings and the report in [`result`], what a model
-//! file holds in [`model`], [`mod@fit`] and [`next_motion`], warnings in [`plausibility`],
+//! The parts of an answer are in the modules: what a model file
+//! holds in [`model`], [`mod@fit`] and [`next_motion`], warnings in [`plausibility`],
 //! reachable sets and what lies outside in [`tube`] and [`claim`]. [`fleet`] is for recordings that
 //! stay on several machines.
 
-mod advice;
 mod answer;
 mod arm;
 mod carry_over;
@@ -32,7 +31,7 @@ pub mod plausibility;
 mod program;
 mod progress;
 mod reach;
-pub mod result;
+mod result;
 mod search;
 mod sets;
 mod stiction;
@@ -56,7 +55,7 @@ pub use job::{Basis, Job};
 pub use model::Model;
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};
-pub use result::finding::Finding;
+pub use result::code::Code;
 pub use sets::UncertaintySets;
 pub use stiction::{Stiction, stiction};
 pub use tube::tube::Tube;

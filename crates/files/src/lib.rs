@@ -28,7 +28,6 @@ pub mod json;
 mod kind;
 mod names;
 mod overwrite;
-mod printable;
 mod read;
 pub mod write;
 
@@ -38,5 +37,4 @@ pub use journal::Journal;
 pub use kind::{ErrorKind, Kind};
 pub use names::distinct_names;
 pub use overwrite::{MARK, Overwrite, TOOL};
-pub use printable::printable;
 pub use read::{bytes, read, read_text};

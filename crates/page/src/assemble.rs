@@ -1,9 +1,10 @@
 //! Assembly of a page from a model and recordings.
 
+use reachtube_conform::Code;
+use reachtube_conform::Model;
 use reachtube_conform::model::Provenance;
-use reachtube_conform::result::Code;
 use reachtube_conform::settings::{Equations, States};
-use reachtube_conform::{Finding, Model};
+use reachtube_finding::Finding;
 use reachtube_reach::Hyperrectangle;
 use reachtube_recordings::{Preparation, Torque};
 use reachtube_scalar::number::counted;
@@ -60,7 +61,10 @@ fn verdict(sources: &Sources) -> Verdict {
     let Sources { model, check, .. } = *sources;
     let of_check = |codes: &[Code]| of_codes(sources, &check.findings, codes);
     let said = [Code::Vacuous, Code::FurthestOutside];
-    let beside = check.findings.iter().filter(|found| said.contains(&found.code));
+    let beside = check
+        .findings
+        .iter()
+        .filter(|found| Code::of(&found.code).is_some_and(|code| said.contains(&code)));
     let headline = check.findings.first().into_iter().chain(beside);
     let words: Vec<String> = headline.map(|found| sentence(sources, found)).collect();
     let warnings = model.warnings.iter().map(Finding::from);

@@ -1,7 +1,7 @@
 //! The pages about a model that was made of logs.
 
-use reachtube_conform::result::FrontEnd;
 use reachtube_conform::{Keep, Opened, Silent};
+use reachtube_finding::FrontEnd;
 use reachtube_pipeline::Built;
 use reachtube_recordings::MemoryRuns;
 

@@ -1,8 +1,9 @@
 //! Tables of a nominal model that was fitted, and facts about calibrated sets.
 
+use reachtube_conform::Code;
+use reachtube_conform::Model;
 use reachtube_conform::fit::{FitRecord, FittedParameter};
-use reachtube_conform::result::Code;
-use reachtube_conform::{Finding, Model};
+use reachtube_finding::Finding;
 
 use crate::cost::cost_unit;
 use crate::text_table::{TextTable, change};

@@ -4,7 +4,7 @@ use super::terms::Explained;
 use super::text::{Text, capital};
 use super::text_table::TextTable;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use reachtube_conform::result::Table;
+use reachtube_finding::Table;
 
 const STYLE: &str = include_str!("page.css");
 /// The browser enforces that the page loads nothing from anywhere, but for a library that is a file

@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use reachtube_conform::model::DataRecord;
-use reachtube_conform::result::FrontEnd;
 use reachtube_conform::{Check, Model, Problem, SuiteReach};
+use reachtube_finding::FrontEnd;
 
 /// The sources of a page.
 #[derive(Debug, Clone, Copy)]

@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use maud::{Markup, PreEscaped, html};
-use reachtube_conform::result::Table;
-use reachtube_conform::{Finding, Model};
+use reachtube_conform::Model;
+use reachtube_finding::{Finding, Table};
 use reachtube_robot::{JointKind, Robot};
 use reachtube_scalar::number::{at_least, significant};
 use reachtube_verify::{AnnexRow, Brakes, StopStudy, annex_table, recorded_table};

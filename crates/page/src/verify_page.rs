@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use maud::{Markup, PreEscaped, html};
-use reachtube_conform::Finding;
+use reachtube_finding::Finding;
 use reachtube_scalar::number::counted;
 use reachtube_verify::{
     Answer, Body, Obstacle, Scene, Solid, SweptCapsule, Verification, picture, summary, worst_first,

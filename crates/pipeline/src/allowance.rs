@@ -7,7 +7,8 @@
 //! one more motion needs with a probability of 5 % at most, if motions need factors of one normal
 //! distribution.
 
-use reachtube_conform::{Answer, Finding};
+use reachtube_conform::Answer;
+use reachtube_finding::Finding;
 
 use crate::carried_over::{Unseen, unseen};
 use crate::error::Result;
@@ -150,9 +151,9 @@ fn rounded_up(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use reachtube_conform::result::{Code, Severity};
     use reachtube_conform::settings::{Equations, NominalStart};
     use reachtube_conform::{Job, Noise, Settings, Silent};
+    use reachtube_finding::Severity;
     use reachtube_recordings::{MemoryRuns, Run, Torque};
     use reachtube_robot::Robot;
 
@@ -210,7 +211,7 @@ mod tests {
         let (allowance, reason, finding) = asked(&answer, &left_out, [0.0, f64::INFINITY]);
         assert!(allowance.is_empty() && reason.ends_with("no allowance encloses them"), "{reason}");
         let finding = finding.unwrap();
-        assert_eq!((finding.code, finding.place.as_deref()), (Code::LeftOut, Some("b")));
+        assert_eq!((finding.code.name(), finding.place.as_deref()), ("left-out", Some("b")));
         assert_eq!(finding.severity, Severity::Warning);
         assert!(finding.text.contains("enclose b, which was left out"), "{finding}");
         // What is accepted anyway needs none.

@@ -1,8 +1,8 @@
 use std::path::Path;
 
-use reachtube_conform::result::Severity;
 use reachtube_conform::settings::Equations;
-use reachtube_conform::{Answer, Finding, FitSettings, Group, Progress};
+use reachtube_conform::{Answer, FitSettings, Group, Progress};
+use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{PrepareSettings, RawLog, check_window};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;

@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
-use reachtube_conform::result::Code;
-use reachtube_conform::{Answer, Check, Finding, Silent};
+use reachtube_conform::{Answer, Check, Silent};
+use reachtube_finding::Finding;
 use reachtube_recordings::{MemoryRuns, RunSource};
 use serde::Serialize;
 
@@ -85,7 +85,7 @@ impl HeldOut {
             None => return None,
         };
         let numbers = [("part".to_string(), part)].into();
-        Some(Finding { numbers, ..warning(Code::HeldOutRates, &text) })
+        Some(Finding { numbers, ..warning(reachtube_conform::Code::HeldOutRates, &text) })
     }
 
     /// Compares a model with prepared recordings. Returns the runs that leave its sets furthest,

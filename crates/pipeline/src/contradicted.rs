@@ -1,7 +1,6 @@
 //! Whether the recordings contradict the robot.
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::Severity;
+use reachtube_finding::{Finding, Severity};
 
 use crate::build::Built;
 

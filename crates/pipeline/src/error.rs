@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use reachtube_conform::Finding;
+use reachtube_finding::Finding;
 use thiserror::Error;
 
 /// Why no model could be made of the recordings.

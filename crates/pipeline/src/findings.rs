@@ -1,8 +1,8 @@
 //! What the recordings say about themselves and the robot, as findings.
 
-use reachtube_conform::Finding;
+use crate::code::Code;
 use reachtube_conform::next_motion::LeftOut;
-use reachtube_conform::result::{Code, Severity};
+use reachtube_finding::{Finding, Severity};
 use reachtube_identify::{Implausible, WrongColumns};
 use reachtube_robot::Robot;
 
@@ -48,11 +48,11 @@ pub(crate) fn not_enclosed(left_out: &LeftOut) -> Finding {
         "no allowance of U makes the sets of the other motions enclose {motion}, which was left \
          out: they do not foretell it; record more motions, or hold it out to look at it"
     );
-    Finding { place: Some(motion.clone()), ..warning(Code::LeftOut, &text) }
+    Finding { place: Some(motion.clone()), ..warning(reachtube_conform::Code::LeftOut, &text) }
 }
 
 /// Makes a warning of a clause.
-pub(crate) fn warning(code: Code, text: &str) -> Finding {
+pub(crate) fn warning(code: impl Into<reachtube_finding::Code>, text: &str) -> Finding {
     Finding::new(Severity::Warning, code, sentence(text))
 }
 

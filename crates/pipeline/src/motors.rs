@@ -1,7 +1,7 @@
 //! Motors that torque sensors do not show.
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::Code;
+use crate::code::Code;
+use reachtube_finding::Finding;
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 

@@ -1,7 +1,6 @@
 //! Whether recorded torques are what the robot's description needs, up to sign and size.
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::Remedy;
+use reachtube_finding::{Finding, Remedy};
 use reachtube_identify::prepare::{PreparedLog, RawLog};
 use reachtube_recordings::{Run, Torque};
 use reachtube_robot::Robot;

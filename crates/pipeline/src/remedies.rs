@@ -1,7 +1,8 @@
 //! Choices that would make a model narrower, found by trying them.
 
 use reachtube_conform::settings::Equations;
-use reachtube_conform::{Finding, FitSettings, Group};
+use reachtube_conform::{FitSettings, Group};
+use reachtube_finding::Finding;
 use reachtube_identify::prepare::RawLog;
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
@@ -13,6 +14,7 @@ use crate::mean_position::mean_position;
 use crate::robot::{Evidence, Nominal};
 use crate::trial::Trial;
 use crate::windows::Prepared;
+use crate::would_help::{nothing_helps, would_help};
 
 /// Windows on which a fit is tried: it takes a thousand times as long as the sets alone.
 const FIT_WINDOWS: usize = 12;
@@ -142,7 +144,7 @@ impl TooWide<'_> {
         let count = tried.len();
         if tried.iter().all(|tried| tried.after >= HELPS * tried.before) && count > 0 {
             let all = tried.iter().map(|tried| (tried.setting, &*tried.value));
-            return vec![Finding::nothing_helps(&all.collect::<Vec<_>>())];
+            return vec![nothing_helps(&all.collect::<Vec<_>>())];
         }
         tried.retain(|tried| tried.after < HELPS * tried.before);
         tried.sort_by(|a, b| a.after.total_cmp(&b.after));
@@ -150,7 +152,7 @@ impl TooWide<'_> {
         let finding = |tried: &Tried| {
             let joint = &joints[tried.joint].name;
             let ratios = [tried.before, tried.after];
-            Finding::would_help(tried.setting, &tried.value, joint, ratios, tried.windows)
+            would_help(tried.setting, &tried.value, joint, ratios, tried.windows)
         };
         tried.iter().take(MOST).map(finding).collect()
     }

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::Severity;
+use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered,
 };

@@ -1,7 +1,8 @@
 //! The question of a scenario, as every front end asks it.
 
-use reachtube_conform::{CheckJob, Finding, Keep, Model, Opened, Progress, Setup};
+use reachtube_conform::{CheckJob, Keep, Model, Opened, Progress, Setup};
 use reachtube_files::distinct_names;
+use reachtube_finding::Finding;
 use reachtube_recordings::RunSource;
 use reachtube_robot::Robot;
 use reachtube_verify::{

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::Code;
+use crate::code::Code;
+use reachtube_finding::Finding;
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, read};
 use reachtube_recordings::{DataSet, RunEntry, RunSource, any_simulated, index_folder};
 use reachtube_robot::Robot;
@@ -113,7 +113,7 @@ fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
             count => format!("{count} recordings are copies of others and are left out"),
         };
         let pair = format!("{} is a copy of {}", copy.display(), original.display());
-        warning(Code::Recordings, &format!("{text}: {pair}"))
+        warning(reachtube_conform::Code::Recordings, &format!("{text}: {pair}"))
     });
     (kept, finding)
 }

@@ -1,7 +1,7 @@
 //! The answer on a few lines.
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::{Code, FrontEnd, Summary};
+use crate::code::Code;
+use reachtube_finding::{Finding, FrontEnd, Summary};
 
 use crate::build::Built;
 
@@ -56,7 +56,7 @@ impl Built {
         // A contradiction is the cause, and no other is sought.
         if !self.is_useful() && self.contradiction().is_none() {
             let findings = self.answer.model.findings().into_iter();
-            let causes = findings.filter(|finding| finding.code == Code::Cause);
+            let causes = findings.filter(|finding| finding.code == reachtube_conform::Code::Cause);
             summary.verdict.extend(causes.map(|finding| finding.written_for(FrontEnd::Choices)));
         }
         summary.table = self.answer.table_at_horizon(&self.held_out.growth);

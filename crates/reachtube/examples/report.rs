@@ -1,7 +1,7 @@
 //! The report page of a virtual arm, written to the folder `reachtube-report`.
 
 use reachtube::campaign::{CampaignOptions, record};
-use reachtube::conform::result::FrontEnd;
+use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, Sources, page, write_html};
 use reachtube::{
     Check, DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, conform, reach,

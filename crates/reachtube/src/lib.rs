@@ -10,7 +10,8 @@ pub use reachtube_conform::{
     self as conform, Check, Conformance, Keep, Model, Problem, Progress, Settings, Setup, Silent,
     Tube, check, conform, reach,
 };
-pub use reachtube_files::{TOOL, printable, write};
+pub use reachtube_files::{TOOL, write};
+pub use reachtube_finding as finding;
 pub use reachtube_identify::{self as identify, Identification, identify};
 #[cfg(feature = "report")]
 pub use reachtube_lab::{Error, Result, campaign, reproduce, virtual_robot};

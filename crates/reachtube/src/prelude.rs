@@ -3,8 +3,7 @@
 #[cfg(feature = "report")]
 pub use reachtube_lab::Result;
 
-pub use reachtube_conform::{
-    Answer, Check, Finding, Job, Model, Noise, Notion, Settings, Silent, Tube,
-};
+pub use reachtube_conform::{Answer, Check, Job, Model, Noise, Notion, Settings, Silent, Tube};
+pub use reachtube_finding::Finding;
 pub use reachtube_recordings::{DataSet, Torque};
 pub use reachtube_robot::Robot;

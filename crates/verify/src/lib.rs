@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 mod body;
+mod code;
 mod error;
 mod kinematics;
 mod margin;
@@ -16,6 +17,7 @@ mod verdict;
 pub use body::body::Body;
 pub use body::capsule::Capsule;
 pub use body::capsules::Capsules;
+pub use code::Code;
 pub use error::Error;
 pub use margin::Margin;
 pub use occupancy::SweptCapsule;

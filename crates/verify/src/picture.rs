@@ -3,7 +3,8 @@
 
 use std::fmt::Write;
 
-use reachtube_files::{MARK, printable};
+use reachtube_files::MARK;
+use reachtube_finding::printable;
 
 use crate::body::body::Body;
 use crate::occupancy::SweptCapsule;

@@ -1,6 +1,6 @@
 //! Verdicts as text.
 
-use reachtube_conform::result::Table;
+use reachtube_finding::Table;
 use reachtube_scalar::number::at_least;
 
 use crate::body::body::Body;

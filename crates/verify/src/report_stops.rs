@@ -1,6 +1,6 @@
 //! Distances at which a stop must be triggered, as text.
 
-use reachtube_conform::result::Table;
+use reachtube_finding::Table;
 use reachtube_scalar::number::at_least;
 
 use crate::verdict::stops::{MotionStops, TriggerDistance};

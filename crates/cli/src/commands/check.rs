@@ -1,7 +1,8 @@
 //! `reachtube check`: does a model enclose recordings?
 
 use clap::Args;
-use reachtube::conform::{Finding, Keep, Notion};
+use reachtube::conform::{Keep, Notion};
+use reachtube::finding::Finding;
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;

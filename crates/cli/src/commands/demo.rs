@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::campaign::{CampaignOptions, RecordedCampaign, record};
-use reachtube::conform::result::{FrontEnd, Summary, Table};
 use reachtube::conform::{Answer, Check, FitSettings, Group, Job, Keep, Settings, Setup, conform};
+use reachtube::finding::{FrontEnd, Summary, Table};
 use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};
 use reachtube::{Model, write};

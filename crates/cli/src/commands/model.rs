@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::conform::Group;
-use reachtube::conform::result::{FrontEnd, Summary};
+use reachtube::finding::{FrontEnd, Summary};
 use reachtube::page::{Assets, built_pages};
 use reachtube::pipeline::{Built, Choice, Choices, Error as PipelineError, build};
 use reachtube::recordings::Torque;

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::conform::model::Provenance;
-use reachtube::conform::result::FrontEnd;
-use reachtube::conform::{Finding, Keep, Model, Stiction, SuiteReach, stiction};
+use reachtube::conform::{Keep, Model, Stiction, SuiteReach, stiction};
+use reachtube::finding::{Finding, FrontEnd};
 use reachtube::page::{Sources, page};
 use reachtube::write;
 use serde_json::json;

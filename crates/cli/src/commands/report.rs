@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use reachtube::conform::Keep;
-use reachtube::conform::result::FrontEnd;
+use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, Sources};
 use serde_json::json;
 

@@ -7,6 +7,7 @@ mod browser;
 mod convert;
 mod defects;
 mod export;
+mod findings;
 mod fixture;
 mod identify;
 mod index;

@@ -11,6 +11,7 @@ pub(crate) mod records;
 mod usefulness;
 mod validity;
 
+pub use crate::search::found::SearchSummary;
 pub use file::Model;
 pub use provenance::Provenance;
 pub use records::{DataRecord, RunRecord, SuiteRecord};

@@ -2,7 +2,7 @@ use reachtube_robot::JointKind;
 use serde::Serialize;
 
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
+use reachtube_finding::{Finding, Severity};
 
 /// The kind of a fault that makes motion unlike healthy motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

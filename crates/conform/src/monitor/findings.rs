@@ -7,7 +7,7 @@ use crate::data::side::Side;
 use crate::monitor::leave::Leave;
 use crate::monitor::monitor::Totals;
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
+use reachtube_finding::{Finding, Severity};
 
 impl Leave {
     /// Returns the value as a finding about a joint of a name and a kind.

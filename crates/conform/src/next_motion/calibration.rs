@@ -4,7 +4,6 @@ use std::path::Path;
 use reachtube_recordings::matching;
 use serde::{Deserialize, Serialize};
 
-use crate::advice::Advice;
 use crate::claim::look::Look;
 use crate::claim::notion::{claim, plant};
 use crate::data::problem::Problem;
@@ -23,6 +22,7 @@ use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::Effort;
 use crate::tube::plant::Costs;
 use crate::tube::tube::Tube;
+use reachtube_finding::Advice;
 
 /// Sets that were found on some motions and then scaled so that they enclose the others, which were
 /// held out: split conformal calibration.

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::result::remedy::Remedy;
+use reachtube_finding::Remedy;
 
 /// A remark that an answer is implausible, although the sets enclose the recordings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -5,16 +5,17 @@ use reachtube_robot::JointKind;
 use crate::check::Check;
 use crate::claim::verdict::SuiteVerdict;
 use crate::result::code::Code;
-use crate::result::finding::Finding;
-use crate::result::report::{Report, Section};
-use crate::result::table::Table;
+use crate::result::findings;
+use reachtube_finding::{Finding, Report, Section, Table};
 
 impl Check {
     /// Returns the answer for people, with one row for each suite; `kinds` belong to the joints.
     #[must_use]
     pub fn report(&self, kinds: &[JointKind]) -> Report {
         let of = |codes: &[Code]| -> Vec<Finding> {
-            let is_of = |finding: &&Finding| codes.contains(&finding.code);
+            let is_of = |finding: &&Finding| {
+                Code::of(&finding.code).is_some_and(|code| codes.contains(&code))
+            };
             self.findings.iter().filter(is_of).cloned().collect()
         };
         let verdict = [Code::Conformant, Code::NotConformant, Code::Vacuous, Code::Points];
@@ -50,6 +51,6 @@ fn row(suite: &SuiteVerdict, kinds: &[JointKind]) -> Vec<String> {
         suite.runs.to_string(),
         suite.rows.to_string(),
         suite.violations.count.to_string(),
-        worst.map_or_else(|| "-".into(), |place| Finding::place_outside(place, kinds)),
+        worst.map_or_else(|| "-".into(), |place| findings::place_outside(place, kinds)),
     ]
 }

@@ -8,13 +8,10 @@ use crate::claim::verdict::{SuiteVerdict, Verdict};
 use crate::model::file::Model;
 use crate::model::provenance::Provenance;
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
-use crate::result::front_end::FrontEnd;
+use crate::result::findings;
 use crate::result::model_summary::{AtHorizon, brief, share, table_of_sets, widest_first};
-use crate::result::remedy::Remedy;
-use crate::result::summary::Summary;
-use crate::result::table::Table;
 use crate::tube::tube::Tube;
+use reachtube_finding::{Finding, FrontEnd, Remedy, Severity, Summary, Table};
 
 impl Check {
     /// Returns the answer on a few lines, for users of a front end: the verdict, the suites that
@@ -46,12 +43,12 @@ impl Check {
             summary.facts.push(widest(model, &sets, &kinds));
         }
         if let Some(growth) = &self.growth {
-            summary.fact("covered, without a proof, if", Finding::least_growth(growth, &kinds));
+            summary.fact("covered, without a proof, if", findings::least_growth(growth, &kinds));
         }
         summary.fact(
             "new motions",
             match &self.trust {
-                Some(trust) => Finding::next_motion_in_brief(trust, "left them"),
+                Some(trust) => findings::next_motion_in_brief(trust, "left them"),
                 None => "no guarantee: the model was fitted to some of these recordings".into(),
             },
         );
@@ -93,10 +90,10 @@ impl Check {
             counted(suites.len(), "suite"),
             self.until_words(),
         )];
-        lines.extend(Finding::vacuous_in_brief(model));
-        let points = Finding::points(&self.verdict, model.settings.states);
+        lines.extend(findings::vacuous_in_brief(model));
+        let points = findings::points(&self.verdict, model.settings.states);
         lines.extend(points.map(|points| points.text));
-        lines.extend(Finding::lost_in_brief(lost));
+        lines.extend(findings::lost_in_brief(lost));
         lines
     }
 }

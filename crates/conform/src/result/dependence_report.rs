@@ -5,9 +5,8 @@ use reachtube_scalar::number::{at_least, four_decimals, significant};
 use crate::model::file::Model;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::without_motion::LeftOut;
-use crate::result::finding::Finding;
-use crate::result::report::Section;
-use crate::result::table::Table;
+use crate::result::findings;
+use reachtube_finding::{Section, Table};
 
 /// Largest number of motions in the table.
 const MOST_MOTIONS: usize = 12;
@@ -15,12 +14,12 @@ const MOST_MOTIONS: usize = 12;
 /// Returns the sets without each motion, the runs that decide, and trends over the runs.
 pub(super) fn dependence(model: &Model) -> [Section; 3] {
     let mut left_out = Section::default();
-    left_out.findings.extend(Finding::left_out(model));
+    left_out.findings.extend(findings::left_out(model));
     left_out.tables.extend((!model.left_out.is_empty()).then(|| table_of_left_out(model)));
     let mut runs = Section::default();
-    runs.findings.extend(Finding::deciding_runs(&model.deciding_runs, model.data.run_count()));
+    runs.findings.extend(findings::deciding_runs(&model.deciding_runs, model.data.run_count()));
     let mut changed = Section::default();
-    changed.findings.extend(Finding::robot_changed(&model.trends));
+    changed.findings.extend(findings::robot_changed(&model.trends));
     for of_suite in model.trends.chunk_by(|a, b| a.suite == b.suite) {
         let (name, value) = trend(model, of_suite);
         changed.fact(name, value);

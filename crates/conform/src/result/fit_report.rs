@@ -4,9 +4,8 @@ use reachtube_scalar::number::four_decimals;
 
 use crate::fit::record::{FitRecord, FittedParameter, TorquePrediction, UnseenMotion};
 use crate::model::file::Model;
-use crate::result::finding::Finding;
-use crate::result::report::Section;
-use crate::result::table::Table;
+use crate::result::findings;
+use reachtube_finding::{Section, Table};
 
 /// The column of standard errors in the table of parameters.
 const STANDARD_ERROR: usize = 3;
@@ -15,8 +14,8 @@ const STANDARD_ERROR: usize = 3;
 pub(super) fn fit(model: &Model) -> Section {
     let Some(record) = &model.fit else { return Section::default() };
     let mut section = Section::default();
-    section.findings.push(Finding::fitted(record, !model.a.is_empty()));
-    section.findings.extend(Finding::parameters_moved(record));
+    section.findings.push(findings::fitted(record, !model.a.is_empty()));
+    section.findings.extend(findings::parameters_moved(record));
     let all = record.parameters.iter();
     let changed: Vec<&FittedParameter> = all.filter(|p| p.has_changed()).collect();
     if !changed.is_empty() {

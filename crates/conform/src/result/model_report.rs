@@ -9,11 +9,10 @@ use serde::Serialize;
 use crate::data::settings::Equations;
 use crate::model::file::Model;
 use crate::result::dependence_report::dependence;
-use crate::result::finding::Finding;
+use crate::result::findings;
 use crate::result::fit_report::fit;
-use crate::result::report::{Report, Section};
-use crate::result::table::Table;
 use crate::tube::witness::Witness;
+use reachtube_finding::{Finding, Report, Section, Table};
 
 /// Largest number of touching values in the table.
 const MOST_PLACES: usize = 6;
@@ -24,8 +23,8 @@ impl Model {
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
         let mut findings = self.report().findings();
-        findings.extend(Finding::reach_of_proof(&self.proof, self.settings.states));
-        findings.extend(Finding::beyond_recordings(&self.trust));
+        findings.extend(findings::reach_of_proof(&self.proof, self.settings.states));
+        findings.extend(findings::beyond_recordings(&self.trust));
         findings
     }
 
@@ -47,7 +46,7 @@ impl Model {
     pub fn report(&self) -> Report {
         let mut sections = vec![verdict(self), sets(self), fit(self)];
         if let Some(any) = &self.any_run {
-            sections.push(Section { findings: vec![Finding::any_run(any)], ..Section::default() });
+            sections.push(Section { findings: vec![findings::any_run(any)], ..Section::default() });
         }
         sections.extend([touching(self), new_motions(self)]);
         sections.extend(dependence(self));
@@ -59,15 +58,15 @@ impl Model {
 /// Returns the verdict, what speaks against it, and the cost.
 fn verdict(model: &Model) -> Section {
     let proof = &model.proof;
-    let mut findings = vec![Finding::verdict_of_fit(model)];
-    findings.extend(Finding::vacuous(model));
-    findings.extend(Finding::points(proof, model.settings.states));
+    let mut findings = vec![findings::verdict_of_fit(model)];
+    findings.extend(findings::vacuous(model));
+    findings.extend(findings::points(proof, model.settings.states));
     findings.extend(proof.lost.iter().map(Finding::from));
     let runs_away = model.search.as_ref().and_then(|search| search.runs_away.as_ref());
-    findings.extend(runs_away.map(|(case, time)| Finding::unstable(case, *time)));
-    findings.push(Finding::cost(model));
+    findings.extend(runs_away.map(|(case, time)| findings::unstable(case, *time)));
+    findings.push(findings::cost(model));
     let gap = model.gap_of_not_minimal();
-    findings.extend(gap.map(Finding::not_smallest));
+    findings.extend(gap.map(findings::not_smallest));
     Section { findings, ..Section::default() }
 }
 
@@ -163,13 +162,13 @@ fn touching(model: &Model) -> Section {
     let rows: Vec<_> = model.tight.iter().map(row).collect();
     let table = Table::new(["run", "time", "state", "side", margin], rows).cut_to(MOST_PLACES);
     let tables = if model.tight.is_empty() { Vec::new() } else { vec![table] };
-    Section { findings: vec![Finding::touching(model)], tables, ..Section::default() }
+    Section { findings: vec![findings::touching(model)], tables, ..Section::default() }
 }
 
 /// Returns how the sets were calibrated, and the strongest statement about the next motion.
 fn new_motions(model: &Model) -> Section {
-    let calibrated = model.calibration.as_ref().map(Finding::calibrated);
-    let bound = Finding::next_motion_of_fit(model);
+    let calibrated = model.calibration.as_ref().map(findings::calibrated);
+    let bound = findings::next_motion_of_fit(model);
     Section { findings: calibrated.into_iter().chain([bound]).collect(), ..Section::default() }
 }
 

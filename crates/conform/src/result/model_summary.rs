@@ -7,11 +7,9 @@ use reachtube_scalar::number::{two_digits_outward, two_digits_up};
 use crate::answer::Answer;
 use crate::model::file::Model;
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
-use crate::result::front_end::FrontEnd;
-use crate::result::summary::Summary;
-use crate::result::table::Table;
+use crate::result::findings;
 use crate::tube::tube::{Enclosure, Tube};
+use reachtube_finding::{Finding, FrontEnd, Severity, Summary, Table};
 
 /// Ratios from here on are factors, not percent.
 const LARGE: f64 = 100.0;
@@ -47,7 +45,7 @@ impl Answer {
         };
         summary.verdict.extend(against(model));
         summary.facts.extend(model.motion_left_out());
-        summary.fact("new motions", Finding::next_motion_in_brief(&model.trust, "decide"));
+        summary.fact("new motions", findings::next_motion_in_brief(&model.trust, "decide"));
         summary.next = model.most_helpful().map(|finding| remedy(&finding, front_end));
         summary
     }
@@ -81,7 +79,7 @@ impl Model {
         let lost = self.proof.lost.iter().map(Finding::from);
         let warnings: Vec<Finding> = self.warnings.iter().map(Finding::from).collect();
         let causes = warnings.iter().filter(|finding| finding.code == Code::Cause).cloned();
-        let new_motions = [Finding::next_motion_of_fit(self)];
+        let new_motions = [findings::next_motion_of_fit(self)];
         let all = lost.chain(causes).chain(warnings.iter().cloned()).chain(new_motions);
         all.into_iter().find(|finding| finding.remedy.is_some())
     }
@@ -94,7 +92,7 @@ fn remedy(finding: &Finding, front_end: FrontEnd) -> String {
 
 /// Returns the verdict on the recordings that a model was made from.
 fn verdict(model: &Model, sets: &AtHorizon) -> String {
-    let words = Finding::outcome_of_fit(model);
+    let words = findings::outcome_of_fit(model);
     let proof = &model.proof;
     let how = match proof.enclosure {
         Enclosure::Inner => "proved",
@@ -102,7 +100,7 @@ fn verdict(model: &Model, sets: &AtHorizon) -> String {
     };
     format!(
         "{words}: {}; {} of {} rows{} {how}, up to {:.3} s",
-        Finding::recordings_of_fit(model),
+        findings::recordings_of_fit(model),
         proof.rows - proof.violations.count,
         proof.rows,
         model.settings.states.of_words(),
@@ -113,15 +111,15 @@ fn verdict(model: &Model, sets: &AtHorizon) -> String {
 /// Returns what speaks against the sets of a model, or limits the proof.
 pub(super) fn against(model: &Model) -> Vec<String> {
     let proof = &model.proof;
-    let mut lines: Vec<String> = Finding::vacuous_in_brief(model).into_iter().collect();
-    lines.extend(Finding::points(proof, model.settings.states).map(|points| points.text));
-    lines.extend(Finding::lost_in_brief(&proof.lost));
+    let mut lines: Vec<String> = findings::vacuous_in_brief(model).into_iter().collect();
+    lines.extend(findings::points(proof, model.settings.states).map(|points| points.text));
+    lines.extend(findings::lost_in_brief(&proof.lost));
     lines
 }
 
 /// Returns a finding in a few words.
 pub(super) fn brief(finding: &Finding) -> String {
-    let meaning = finding.code.meaning().trim_end_matches('.');
+    let meaning = Code::of(&finding.code).map_or("", Code::meaning).trim_end_matches('.');
     match &finding.place {
         _ if finding.code == Code::Cause || finding.severity != Severity::Warning => {
             finding.text.clone()

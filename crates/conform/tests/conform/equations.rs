@@ -4,12 +4,12 @@ use std::path::Path;
 
 use crate::common::{Random, bent, conform_all, grid};
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind};
-use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::{Equations, Method};
 use reachtube_conform::{
     Conformance, Error, FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, check,
     fit, reach,
 };
+use reachtube_finding::FrontEnd;
 use reachtube_ode::{DormandPrince, InitialValueProblem as Simulated, Tolerance};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::{DrivenBy, Parameter, ParameterKind, Robot, RobotField};

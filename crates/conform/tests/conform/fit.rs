@@ -3,10 +3,10 @@
 use crate::common::{Random, conform_all, fold_of, grid, step, two_joints};
 use nalgebra::DVector;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, linear_model};
+use reachtube_conform::Code;
 use reachtube_conform::fit::{FitRecord, Fitted};
 use reachtube_conform::fleet::OnDefect;
 use reachtube_conform::plausibility::WarningKind;
-use reachtube_conform::result::Code;
 use reachtube_conform::settings::{Centre, NominalStart};
 use reachtube_conform::{
     Error, FitSettings, Group, Keep, Model, Problem, Progress, Settings, Setup, Silent, carry_over,

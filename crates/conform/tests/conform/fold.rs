@@ -5,11 +5,11 @@ use crate::common::{Disturbed, Random, fold_of, grid, two_joints};
 use proptest::prelude::*;
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_conform::fleet::{Fold, OnDefect};
-use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::{
     Error, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
 };
+use reachtube_finding::FrontEnd;
 use reachtube_recordings::{Defect, MemoryRuns, Run, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
 use reachtube_robot::friction::{Warming, WarmingBy};

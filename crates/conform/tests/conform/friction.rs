@@ -1,11 +1,12 @@
 //! Friction at speeds that it was not fitted on, and nominal motions that run away by it.
 
 use crate::common::{conform_all, grid};
-use reachtube_conform::result::{Code, Severity};
+use reachtube_conform::Code;
 use reachtube_conform::settings::Equations;
 use reachtube_conform::{
     Error, FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, conform, fit,
 };
+use reachtube_finding::Severity;
 use reachtube_ode::{DormandPrince, InitialValueProblem as Simulated, Tolerance};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::{DrivenBy, Robot, RobotField};
@@ -67,7 +68,8 @@ fn a_nominal_motion_that_runs_away_counts_as_outside() {
     let found = conform_all(&problem);
     let model = Model::new(&problem, &found);
     assert!(found.verdict.conformant);
-    let codes: Vec<Code> = model.findings().iter().map(|finding| finding.code).collect();
+    let codes: Vec<Code> =
+        model.findings().iter().filter_map(|finding| Code::of(&finding.code)).collect();
     assert!(codes.contains(&Code::FallingFriction) && !codes.contains(&Code::FrictionRange));
 
     let check = model.check(turning(2.0)).run(&Silent).unwrap();

@@ -1,8 +1,8 @@
 //! Which bounds are guarantees, and for which models they are stated.
 
 use reachtube_abstraction::{Abstraction, ModelKind};
+use reachtube_conform::Code;
 use reachtube_conform::next_motion::TrustKind;
-use reachtube_conform::result::Code;
 use reachtube_conform::settings::{InitialLimit, NominalStart};
 use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent};
 use reachtube_recordings::{MemoryRuns, Preparation, Run, Torque};

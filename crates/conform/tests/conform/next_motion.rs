@@ -4,9 +4,9 @@ use crate::common::{
     Disturbed, Random, Recorded, conform_all, grid, read, two_joints, write_data_set,
 };
 use reachtube_abstraction::{Abstraction, ModelKind};
+use reachtube_conform::Code;
 use reachtube_conform::next_motion::Trust;
 use reachtube_conform::plausibility::WarningKind;
-use reachtube_conform::result::Code;
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::tube::Witness;
 use reachtube_conform::{

@@ -9,13 +9,13 @@ use crate::common::{
     self, Random, Recorded, bent, check_against, conform_all, grid, read, read_with, write_data_set,
 };
 use reachtube_abstraction::{Abstraction, ModelField, ModelKind, PolynomialModel};
-use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::Method;
 use reachtube_conform::tube::Enclosure;
 use reachtube_conform::{
     Conformance, Model, Notion, Progress, Settings, Setup, Silent, Tube, UncertaintySets, Verdict,
     check, conform,
 };
+use reachtube_finding::FrontEnd;
 use reachtube_ode::{DormandPrince, InitialValueProblem, Tolerance};
 use reachtube_reach::{Disturbance, Hyperrectangle, System as Dynamics};
 use reachtube_recordings::Torque;

@@ -4,8 +4,9 @@ use crate::common::{Random, grid};
 use reachtube_conform::plausibility::{Warning, WarningKind};
 use reachtube_conform::settings::{Equations, Method, NominalStart};
 use reachtube_conform::{
-    Conformance, Finding, Keep, Model, Noise, Problem, Settings, Setup, Silent, conform,
+    Conformance, Keep, Model, Noise, Problem, Settings, Setup, Silent, conform,
 };
+use reachtube_finding::Finding;
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
 

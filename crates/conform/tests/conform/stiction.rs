@@ -1,10 +1,11 @@
 //! Dry friction of joints that may come to rest, beside U.
 
-use reachtube_conform::result::{Code, FrontEnd, Severity};
+use reachtube_conform::Code;
 use reachtube_conform::{
     Answer, Error, Job, Keep, Model, Problem, Settings, Setup, Silent, Stiction, Tube,
     UncertaintySets, reach, stiction,
 };
+use reachtube_finding::{FrontEnd, Severity};
 use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;

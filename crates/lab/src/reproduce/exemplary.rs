@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use reachtube_conform::result::FrontEnd;
 use reachtube_conform::settings::States;
 use reachtube_conform::{
     Check, Conformance, Keep, Model, Problem, Setup, Silent, Tube, Verdict, reach,
 };
+use reachtube_finding::FrontEnd;
 use reachtube_recordings::DataSet;
 
 use super::error::ReproduceError;

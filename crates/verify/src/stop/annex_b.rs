@@ -1,8 +1,8 @@
 //! The table of stopping times and distances that ISO 10218-1 asks for in Annex B.
 
+use crate::code::Code;
 use rayon::prelude::*;
-use reachtube_conform::Finding;
-use reachtube_conform::result::{Code, Severity};
+use reachtube_finding::{Finding, Severity};
 use reachtube_reach::Hyperrectangle;
 use reachtube_robot::{InertiaPoint, LinkInertia, Robot};
 use reachtube_scalar::Interval;

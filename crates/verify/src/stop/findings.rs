@@ -1,7 +1,7 @@
 //! What is known about the stops of a robot, statement by statement.
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::{Code, Severity};
+use crate::code::Code;
+use reachtube_finding::{Finding, Severity};
 use reachtube_scalar::number::{at_least, significant};
 
 use crate::stop::along::{WorstStop, of_suites, proved};

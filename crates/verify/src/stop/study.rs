@@ -1,6 +1,7 @@
 //! All that is asked about the stops of a robot.
 
-use reachtube_conform::{Finding, Problem, UncertaintySets};
+use reachtube_conform::{Problem, UncertaintySets};
+use reachtube_finding::Finding;
 use reachtube_recordings::RunSource;
 use reachtube_robot::JointKind;
 use serde::Serialize;

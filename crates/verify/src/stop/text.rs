@@ -1,7 +1,7 @@
 //! Stops as text.
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::{Code, Table};
+use crate::code::Code;
+use reachtube_finding::{Finding, Table};
 use reachtube_scalar::number::{at_least, significant};
 
 use crate::stop::along::WorstStop;
@@ -102,7 +102,7 @@ pub fn recorded_table(stops: &[RecordedStop], unit: &str) -> Table {
 }
 
 fn is_about_table(finding: &Finding) -> bool {
-    matches!(finding.code, Code::TableIncomplete | Code::BrakeWeak)
+    finding.code == Code::TableIncomplete || finding.code == Code::BrakeWeak
 }
 
 fn bound(value: f64) -> String {

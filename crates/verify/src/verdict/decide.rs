@@ -22,7 +22,7 @@ const HALVINGS: [u32; 2] = [6, 4];
 /// What would decide a question that is open, found by trying.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Advice {
+pub enum NextStep {
     /// Steps divided into this number of parts prove that the links stay clear.
     Refine(u32),
     /// X0 and U scaled by this factor about their centres, with steps divided into 64 parts, prove
@@ -45,7 +45,7 @@ pub enum Advice {
 /// # Errors
 ///
 /// As [`reach()`].
-pub(super) fn advice(question: &Question, index: usize) -> Result<Advice> {
+pub(super) fn advice(question: &Question, index: usize) -> Result<NextStep> {
     let Question { problem, tube, body, scene } = *question;
     let is_clear = |tube: &Tube, parts: u32| -> Result<bool> {
         let reached = &reach(problem, tube)?[index];
@@ -54,14 +54,14 @@ pub(super) fn advice(question: &Question, index: usize) -> Result<Advice> {
     };
     for parts in PARTS.into_iter().filter(|parts| *parts > scene.refine) {
         if is_clear(tube, parts)? {
-            return Ok(Advice::Refine(parts));
+            return Ok(NextStep::Refine(parts));
         }
     }
     if problem.dynamics().linear_system().is_none() {
-        return Ok(Advice::NotTried);
+        return Ok(NextStep::NotTried);
     }
     let with = |factor: f64| is_clear(&Tube::new(problem, scaled(&tube.sets, factor))?, PARTS[0]);
-    if with(0.0)? { largest(HALVINGS[0], with) } else { Ok(Advice::Nominal) }
+    if with(0.0)? { largest(HALVINGS[0], with) } else { Ok(NextStep::Nominal) }
 }
 
 /// Finds what would decide whether the links stay clear until standstill.
@@ -69,10 +69,10 @@ pub(super) fn advice(question: &Question, index: usize) -> Result<Advice> {
 /// # Errors
 ///
 /// As [`reach()`].
-pub(super) fn stop_advice(question: &Question, rule: &StopRule, index: usize) -> Result<Advice> {
+pub(super) fn stop_advice(question: &Question, rule: &StopRule, index: usize) -> Result<NextStep> {
     let Question { problem, tube, body, scene } = *question;
     if problem.dynamics().linear_system().is_none() {
-        return Ok(Advice::NotTried);
+        return Ok(NextStep::NotTried);
     }
     let with = |factor: f64| -> Result<(MotionStops, bool)> {
         let sets = scaled(&tube.sets, factor);
@@ -86,19 +86,19 @@ pub(super) fn stop_advice(question: &Question, rule: &StopRule, index: usize) ->
     };
     match with(0.0)? {
         (_, true) => largest(HALVINGS[1], |factor| Ok(with(factor)?.1)),
-        (stops, false) if stops.proved < stops.samples => Ok(Advice::Brakes),
-        _ => Ok(Advice::Nominal),
+        (stops, false) if stops.proved < stops.samples => Ok(NextStep::Brakes),
+        _ => Ok(NextStep::Nominal),
     }
 }
 
 /// Returns the largest factor of the sets that decides, found by bisection from 0, which does.
-fn largest(halvings: u32, decides: impl Fn(f64) -> Result<bool>) -> Result<Advice> {
+fn largest(halvings: u32, decides: impl Fn(f64) -> Result<bool>) -> Result<NextStep> {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..halvings {
         let middle = 0.5 * (low + high);
         if decides(middle)? { low = middle } else { high = middle }
     }
-    Ok(Advice::SmallerSets(low))
+    Ok(NextStep::SmallerSets(low))
 }
 
 /// Scales how far the torque of the drives may be from the controller's.

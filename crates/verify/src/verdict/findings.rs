@@ -1,11 +1,11 @@
 //! Verdicts as findings.
 
-use reachtube_conform::Finding;
-use reachtube_conform::result::{Code, Severity};
+use crate::code::Code;
+use reachtube_finding::{Finding, Severity};
 
 use crate::body::body::Body;
 use crate::scene::scenario::Scene;
-use crate::verdict::decide::Advice;
+use crate::verdict::decide::NextStep;
 use crate::verdict::stop_verdict::{closest_found, lower, stop_verdict};
 use crate::verdict::verification::{Answer, Verification};
 
@@ -129,44 +129,46 @@ fn too_close(worst: &Verification) -> Option<String> {
 
 fn next(v: &Verification) -> Option<Finding> {
     let case = &v.case;
-    let info = |code: Code, text: String| Finding::new(Severity::Info, code, text).at(case);
+    let info = |code: reachtube_finding::Code, text: String| {
+        Finding::new(Severity::Info, code, text).at(case)
+    };
     Some(match v.advice? {
-        Advice::Refine(parts) => info(
-            Code::StepsTooLong,
+        NextStep::Refine(parts) => info(
+            Code::StepsTooLong.into(),
             format!("{case}: `refine = {parts}` in the scenario proves that all links stay clear."),
         )
         .with("refine", parts.into()),
-        Advice::SmallerSets(factor) => info(
-            Code::SetsTooLarge,
+        NextStep::SmallerSets(factor) => info(
+            Code::SetsTooLarge.into(),
             format!(
                 "{case}: with X0 and U {factor:.2} times as wide, all links would be proved to \
                  stay clear; a better model or cleaner recordings give smaller sets."
             ),
         )
         .with("factor", factor),
-        Advice::Nominal => info(
-            Code::NominalTooClose,
+        NextStep::Nominal => info(
+            Code::NominalTooClose.into(),
             format!(
                 "{case}: without any uncertainty no distance is proved either; move the obstacle \
                  or the motion."
             ),
         ),
-        Advice::Brakes => info(
-            Code::BrakeWeak,
+        NextStep::Brakes => info(
+            Code::BrakeWeak.into(),
             format!(
                 "{case}: without any uncertainty no standstill is proved either; the brakes may \
                  be too weak for the load, or the span of `delay` too long."
             ),
         ),
-        Advice::SetLost => info(
-            Code::SetLost,
+        NextStep::SetLost => info(
+            reachtube_conform::Code::SetLost.into(),
             format!(
                 "{case}: the reachable set ends before the motion; `until` in the scenario uses \
                  only the samples before."
             ),
         ),
-        Advice::NotTried => info(
-            Code::SetsNotTried,
+        NextStep::NotTried => info(
+            Code::SetsNotTried.into(),
             format!(
                 "{case}: smaller sets may decide; they were not tried, as each takes long to \
                  compute for a model that is not linear."

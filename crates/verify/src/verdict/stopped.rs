@@ -9,7 +9,7 @@ use crate::scene::scenario::Scene;
 use crate::stop::along::Motion;
 use crate::stop::path::Path;
 use crate::stop::rule::StopRule;
-use crate::verdict::decide::{Advice, stop_advice};
+use crate::verdict::decide::{NextStep, stop_advice};
 use crate::verdict::question::Question;
 use crate::verdict::stop_witness::{StopSearch, TOUCH_OF_STOP};
 use crate::verdict::stops::{MotionStops, stop_from};
@@ -53,7 +53,7 @@ impl Verification {
         if rule.distance.is_some() {
             // The motion without a stop is not one of the scenario.
             self.closest = None;
-            self.advice = self.lost.is_some().then_some(Advice::SetLost);
+            self.advice = self.lost.is_some().then_some(NextStep::SetLost);
         }
         self.stops = Some(stops);
         self

@@ -11,7 +11,7 @@ use crate::margin::Margin;
 use crate::scene::scenario::Scene;
 use crate::stop::rule::StopRule;
 use crate::verdict::clearance::{Clearance, clearances};
-use crate::verdict::decide::{Advice, advice, clears};
+use crate::verdict::decide::{NextStep, advice, clears};
 use crate::verdict::question::Question;
 use crate::verdict::stops::MotionStops;
 use crate::verdict::witness::{Approach, Witness};
@@ -46,7 +46,7 @@ pub struct Verification {
     /// The simulated motion that comes closest, unless the answer is safe.
     pub closest: Option<Witness>,
     /// What would decide, if the answer is undecided.
-    pub advice: Option<Advice>,
+    pub advice: Option<NextStep>,
     /// The stops from the samples of the motion, if the scenario has any.
     pub stops: Option<MotionStops>,
     /// Where the reachable set ends early, if it does.
@@ -128,7 +128,7 @@ impl Question<'_> {
             _ => Answer::Undecided,
         };
         let advice = match (answer, &lost) {
-            (Answer::Undecided, Some(_)) => Some(Advice::SetLost),
+            (Answer::Undecided, Some(_)) => Some(NextStep::SetLost),
             (Answer::Undecided, None) if is_open => Some(advice(self, index)?),
             _ => None,
         };

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
-use reachtube::conform::result::{FrontEnd, Summary};
 use reachtube::conform::{Answer, FitSettings, Job, Settings};
+use reachtube::finding::{FrontEnd, Summary};
 use reachtube::page::{Assets, Page, Sources, page};
 use reachtube::pipeline::Cut;
 use reachtube::recordings::{DataSet, Preparation, Torque};

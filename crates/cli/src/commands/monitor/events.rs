@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use reachtube::conform::Finding;
 use reachtube::conform::monitor::{Alarm, HealthyMotion, Leave, Monitor};
+use reachtube::finding::Finding;
 use reachtube::recordings::State;
 use reachtube::robot::{JointKind, Robot};
 use serde_json::{Value, json};
@@ -44,13 +44,13 @@ impl Events {
         let name = &self.names[leave.joint - 1];
         let finding = leave.finding(name, self.kinds[leave.joint - 1]);
         let text = format!("{}\n", finding.text);
-        let code = finding.code;
+        let code = finding.code.name().to_string();
         self.first.get_or_insert(finding);
         if self.json {
             let mut event = serde_json::to_value(leave).expect("an event has string keys");
             event["event"] = "left".into();
             event["name"] = name.clone().into();
-            event["code"] = code.name().into();
+            event["code"] = code.into();
             return line(&event);
         }
         output::print(&text)

@@ -4,12 +4,12 @@ use std::sync::Arc;
 use reachtube_recordings::{Defect, DefectKind, ReadOptions, Run};
 use sha2::{Digest, Sha256};
 
-use crate::advice::Advice;
 use crate::data::input::RunInput;
 use crate::data::settings::NominalStart;
 use crate::data::setup::{Drive, Setup, read_options};
 use crate::data::shape::Shape;
 use crate::error::{Error, Result};
+use reachtube_finding::Advice;
 
 /// What the reading of recordings depends on.
 #[derive(Debug)]

@@ -5,7 +5,6 @@ use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Run, RunEntry};
 use serde::{Deserialize, Serialize};
 
-use crate::advice::Advice;
 use crate::data::envelope::Envelope;
 use crate::data::fold::context::Context;
 use crate::data::fold::whole_runs::{WholeRun, WholeRuns};
@@ -13,6 +12,7 @@ use crate::data::input::{RunInput, SharedInput};
 use crate::data::summary::{RunSummary, SAMPLE, sampled};
 use crate::data::totals::Totals;
 use crate::error::{Error, Result};
+use reachtube_finding::Advice;
 
 /// Summaries of runs beyond the sample that may stay for a while.
 const SUPERFLUOUS: usize = SAMPLE / 4;

@@ -5,7 +5,7 @@ use crate::data::problem::Problem;
 use crate::data::settings::States;
 use crate::model::file::Model;
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
+use reachtube_finding::{Finding, Severity};
 
 /// Recordings of another sample time may be longer than the model's own by this factor.
 const LONGER: f64 = 1.01;

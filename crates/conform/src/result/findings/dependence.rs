@@ -7,110 +7,108 @@ use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::without_motion::LeftOut;
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::listed;
+use reachtube_finding::{Finding, Severity};
 
-impl Finding {
-    /// The meaning of the table of the sets without each motion, and the motion that the others
-    /// foretell least; `None` if there is no table to expect.
-    pub(crate) fn left_out(model: &Model) -> Option<Self> {
-        let is_linear = model.acceleration.is_empty();
-        let text = match (model.left_out.is_empty(), model.data.motions()) {
-            (true, 0 | 1) => return None,
-            (true, _) if is_linear => return None,
-            (true, _) => {
-                "The sets without each motion are computed by the method `program` and for the \
-                 notion `hull` only. Otherwise, find sets for the suites of the other motions, and \
-                 check the motion that was left out."
-            }
-            (false, _) if model.fit.as_ref().is_some_and(|fit| fit.taken) => match is_linear {
-                true => {
-                    "The nominal model was fitted and the sets were found without each motion. \
-                         They describe these motions and bound no other."
-                }
-                false => {
-                    "The sets were found without each motion, for a nominal model that was \
-                         fitted to all. They describe these motions and bound no other."
-                }
-            },
-            (false, _) => {
-                "The sets were found without each motion. They describe these motions and bound \
-                 no other."
-            }
-        };
-        let motions = model.left_out.len() as f64;
-        let finding = Self::new(Severity::Info, Code::LeftOut, text).with("motions", motions);
-        Some(match furthest(&model.left_out) {
-            None => finding,
-            Some(left @ LeftOut { motion, gauge, .. }) => {
-                let growth = match gauge {
-                    Some(gauge) => {
-                        format!("would have to grow {} times to enclose it", at_least(*gauge))
-                    }
-                    None => "enclose it under no growth that was found".into(),
-                };
-                let more = format!(
-                    " Without motion {motion} they {growth}, and another motion may lie as far \
-                     out.{}",
-                    in_turn(left)
-                );
-                let text = finding.text.clone() + &more;
-                let number = |gauge: &Option<f64>| gauge.unwrap_or(f64::INFINITY);
-                Self { text, ..finding }
-                    .at(motion)
-                    .with("growth", number(gauge))
-                    .with("initial_growth", number(&left.initial_gauge))
-                    .with("input_growth", number(&left.input_gauge))
-            }
-        })
-    }
-
-    /// The runs that decide the sets, and what they cost; `None` if none does.
-    pub(crate) fn deciding_runs(runs: &DecidingRuns, all: usize) -> Option<Self> {
-        let first = runs.most.first()?;
-        let mut text = format!(
-            "{} of {all} {} the sets, most of all {} with {}",
-            runs.count,
-            match (all, runs.count) {
-                (1, _) => "run decides",
-                (_, 1) => "runs decides",
-                _ => "runs decide",
-            },
-            first.file,
-            counted(first.values, "value"),
-        );
-        if let Some(cost) = runs.cost_without {
-            let named = match runs.most.len() {
-                1 => "one that decides".into(),
-                named => format!("{named} that decide"),
-            };
-            text += &format!(
-                "; without the {named} most the sets would cost about {} (estimated from at most \
-                 64 samples of each run)",
-                four_decimals(cost)
-            );
+/// The meaning of the table of the sets without each motion, and the motion that the others
+/// foretell least; `None` if there is no table to expect.
+pub(crate) fn left_out(model: &Model) -> Option<Finding> {
+    let is_linear = model.acceleration.is_empty();
+    let text = match (model.left_out.is_empty(), model.data.motions()) {
+        (true, 0 | 1) => return None,
+        (true, _) if is_linear => return None,
+        (true, _) => {
+            "The sets without each motion are computed by the method `program` and for the \
+             notion `hull` only. Otherwise, find sets for the suites of the other motions, and \
+             check the motion that was left out."
         }
-        let finding = Self::new(Severity::Info, Code::DecidingRuns, text + ".");
-        Some(
-            finding
-                .at(&first.file)
-                .with("runs", runs.count as f64)
-                .with("cost_without", runs.cost_without.unwrap_or(f64::NAN)),
-        )
-    }
+        (false, _) if model.fit.as_ref().is_some_and(|fit| fit.taken) => match is_linear {
+            true => {
+                "The nominal model was fitted and the sets were found without each motion. \
+                     They describe these motions and bound no other."
+            }
+            false => {
+                "The sets were found without each motion, for a nominal model that was \
+                     fitted to all. They describe these motions and bound no other."
+            }
+        },
+        (false, _) => {
+            "The sets were found without each motion. They describe these motions and bound \
+             no other."
+        }
+    };
+    let motions = model.left_out.len() as f64;
+    let finding = Finding::new(Severity::Info, Code::LeftOut, text).with("motions", motions);
+    Some(match furthest(&model.left_out) {
+        None => finding,
+        Some(left @ LeftOut { motion, gauge, .. }) => {
+            let growth = match gauge {
+                Some(gauge) => {
+                    format!("would have to grow {} times to enclose it", at_least(*gauge))
+                }
+                None => "enclose it under no growth that was found".into(),
+            };
+            let more = format!(
+                " Without motion {motion} they {growth}, and another motion may lie as far \
+                 out.{}",
+                in_turn(left)
+            );
+            let text = finding.text.clone() + &more;
+            let number = |gauge: &Option<f64>| gauge.unwrap_or(f64::INFINITY);
+            Finding { text, ..finding }
+                .at(motion)
+                .with("growth", number(gauge))
+                .with("initial_growth", number(&left.initial_gauge))
+                .with("input_growth", number(&left.input_gauge))
+        }
+    })
+}
 
-    /// Finding that the robot changed while it was recorded; `None` if it did not.
-    pub(crate) fn robot_changed(trends: &[Trend]) -> Option<Self> {
-        let mut suites: Vec<String> = trends.iter().map(|trend| trend.suite.clone()).collect();
-        suites.dedup();
-        let place = format!("{} {}", plural(suites.len(), "suite"), listed(&suites));
-        let text = format!(
-            "The robot changed while it was recorded: in {place}, joints follow the order of the \
-             runs, as a robot that warms up does. A later motion may lie further out."
+/// The runs that decide the sets, and what they cost; `None` if none does.
+pub(crate) fn deciding_runs(runs: &DecidingRuns, all: usize) -> Option<Finding> {
+    let first = runs.most.first()?;
+    let mut text = format!(
+        "{} of {all} {} the sets, most of all {} with {}",
+        runs.count,
+        match (all, runs.count) {
+            (1, _) => "run decides",
+            (_, 1) => "runs decides",
+            _ => "runs decide",
+        },
+        first.file,
+        counted(first.values, "value"),
+    );
+    if let Some(cost) = runs.cost_without {
+        let named = match runs.most.len() {
+            1 => "one that decides".into(),
+            named => format!("{named} that decide"),
+        };
+        text += &format!(
+            "; without the {named} most the sets would cost about {} (estimated from at most \
+             64 samples of each run)",
+            four_decimals(cost)
         );
-        let finding = Self::new(Severity::Warning, Code::RobotChanged, text).at(place);
-        (!suites.is_empty()).then(|| finding.with("joints", trends.len() as f64))
     }
+    let finding = Finding::new(Severity::Info, Code::DecidingRuns, text + ".");
+    Some(
+        finding
+            .at(&first.file)
+            .with("runs", runs.count as f64)
+            .with("cost_without", runs.cost_without.unwrap_or(f64::NAN)),
+    )
+}
+
+/// Finding that the robot changed while it was recorded; `None` if it did not.
+pub(crate) fn robot_changed(trends: &[Trend]) -> Option<Finding> {
+    let mut suites: Vec<String> = trends.iter().map(|trend| trend.suite.clone()).collect();
+    suites.dedup();
+    let place = format!("{} {}", plural(suites.len(), "suite"), listed(&suites));
+    let text = format!(
+        "The robot changed while it was recorded: in {place}, joints follow the order of the \
+         runs, as a robot that warms up does. A later motion may lie further out."
+    );
+    let finding = Finding::new(Severity::Warning, Code::RobotChanged, text).at(place);
+    (!suites.is_empty()).then(|| finding.with("joints", trends.len() as f64))
 }
 
 /// Returns which of X0 and U has to grow for a motion, in words; no words if it is not known.

@@ -4,9 +4,8 @@ use crate::fit::record::Overfit;
 use crate::plausibility::cause::{Cause, Reading};
 use crate::plausibility::warning::{Remark, Warning, WarningKind};
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::listed;
-use crate::result::remedy::Remedy;
+use reachtube_finding::{Finding, Remedy, Severity};
 use reachtube_scalar::number::{four_decimals, plural};
 
 /// The horizon that is proposed for long recordings, s.
@@ -311,7 +310,7 @@ fn percent(part: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::front_end::FrontEnd;
+    use reachtube_finding::FrontEnd;
 
     #[test]
     fn a_small_part_is_not_printed_as_none() {

@@ -2,24 +2,22 @@
 
 use crate::model::file::{MOST_TIGHT, Model};
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
 use crate::tube::tube::Enclosure;
+use reachtube_finding::{Finding, Severity};
 
-impl Finding {
-    /// How many recorded values touch the reachable set.
-    pub(crate) fn touching(model: &Model) -> Self {
-        let set = match model.proof.enclosure {
-            Enclosure::Inner => "reachable set",
-            Enclosure::Outer => "linearised set",
-        };
-        let text = match model.tight.len() {
-            1 => format!("1 recorded value touches the {set} and decides X0 and U"),
-            count => {
-                let more = if count == MOST_TIGHT { " or more" } else { "" };
-                format!("{count}{more} recorded values touch the {set} and decide X0 and U")
-            }
-        };
-        let text = if model.tight.is_empty() { text } else { text + ":" };
-        Self::new(Severity::Info, Code::Touching, text).with("values", model.tight.len() as f64)
-    }
+/// How many recorded values touch the reachable set.
+pub(crate) fn touching(model: &Model) -> Finding {
+    let set = match model.proof.enclosure {
+        Enclosure::Inner => "reachable set",
+        Enclosure::Outer => "linearised set",
+    };
+    let text = match model.tight.len() {
+        1 => format!("1 recorded value touches the {set} and decides X0 and U"),
+        count => {
+            let more = if count == MOST_TIGHT { " or more" } else { "" };
+            format!("{count}{more} recorded values touch the {set} and decide X0 and U")
+        }
+    };
+    let text = if model.tight.is_empty() { text } else { text + ":" };
+    Finding::new(Severity::Info, Code::Touching, text).with("values", model.tight.len() as f64)
 }

@@ -6,10 +6,9 @@ use reachtube_scalar::number::{at_least, four_decimals};
 
 use crate::model::file::Model;
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::listed;
-use crate::result::remedy::Remedy;
 use crate::stiction::Stiction;
+use reachtube_finding::{Finding, Remedy, Severity};
 
 impl Model {
     /// Returns what U says of the dry friction of these joints; `None` for no joint.

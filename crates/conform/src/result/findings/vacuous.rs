@@ -6,46 +6,44 @@ use reachtube_scalar::number::{counted, plural};
 use crate::model::file::Model;
 use crate::plausibility::{Usefulness, Vacuity, VacuousSet};
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
 use crate::result::findings::words::listed;
+use reachtube_finding::{Finding, Severity};
 
 /// Largest number of sets that the sentence describes.
 const MOST_SETS: usize = 3;
 
-impl Finding {
-    /// Which sets of a model are vacuous; none of a model that is useful or was not proved.
-    pub(crate) fn vacuous(model: &Model) -> Option<Self> {
-        let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
-        let kinds = model.robot.kinds();
-        let sets = worst_first(said);
-        let place = place(&sets);
-        let first = sets.iter().take(MOST_SETS);
-        let mut words: Vec<String> =
-            first.map(|set| described(set, said, kinds[set.joint - 1])).collect();
-        let more = sets.len().saturating_sub(MOST_SETS);
-        if more > 0 {
-            words.push(format!("{} more", counted(more, "set")));
-        }
-        let text = format!("Proved, but vacuous for {place}: {}.", words.join("; "));
-        let worst = sets.first()?;
-        let finding = Self::new(Severity::Failure, Code::Vacuous, text).at(place);
-        Some(
-            finding
-                .with("horizon", said.horizon)
-                .with("joint", worst.joint as f64)
-                .with("size", worst.size)
-                .with("compared_with", worst.compared_with),
-        )
+/// Which sets of a model are vacuous; none of a model that is useful or was not proved.
+pub(crate) fn vacuous(model: &Model) -> Option<Finding> {
+    let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
+    let kinds = model.robot.kinds();
+    let sets = worst_first(said);
+    let place = place(&sets);
+    let first = sets.iter().take(MOST_SETS);
+    let mut words: Vec<String> =
+        first.map(|set| described(set, said, kinds[set.joint - 1])).collect();
+    let more = sets.len().saturating_sub(MOST_SETS);
+    if more > 0 {
+        words.push(format!("{} more", counted(more, "set")));
     }
+    let text = format!("Proved, but vacuous for {place}: {}.", words.join("; "));
+    let worst = sets.first()?;
+    let finding = Finding::new(Severity::Failure, Code::Vacuous, text).at(place);
+    Some(
+        finding
+            .with("horizon", said.horizon)
+            .with("joint", worst.joint as f64)
+            .with("size", worst.size)
+            .with("compared_with", worst.compared_with),
+    )
+}
 
-    /// Returns the worst vacuous set in a few words, with all joints that have one.
-    pub(crate) fn vacuous_in_brief(model: &Model) -> Option<String> {
-        let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
-        let sets = worst_first(said);
-        let worst = sets.first()?;
-        let kind = model.robot.kinds()[worst.joint - 1];
-        Some(format!("vacuous for {}: {}", place(&sets), described(worst, said, kind)))
-    }
+/// Returns the worst vacuous set in a few words, with all joints that have one.
+pub(crate) fn vacuous_in_brief(model: &Model) -> Option<String> {
+    let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
+    let sets = worst_first(said);
+    let worst = sets.first()?;
+    let kind = model.robot.kinds()[worst.joint - 1];
+    Some(format!("vacuous for {}: {}", place(&sets), described(worst, said, kind)))
 }
 
 /// Returns the vacuous sets, the worst first.

@@ -8,12 +8,11 @@ use crate::claim::witness::{PointVerdict, PointWitness};
 use crate::data::settings::{Settings, States};
 use crate::model::file::Model;
 use crate::result::code::Code;
-use crate::result::finding::{Finding, Severity};
-use crate::result::remedy::Remedy;
 use crate::search::found::SearchSummary;
 use crate::tube::strand::Lost;
 use crate::tube::tube::Enclosure;
 use crate::tube::witness::Witness;
+use reachtube_finding::{Finding, Remedy, Severity};
 
 /// Returns the code and the severity of a verdict.
 fn outcome(is_conformant: bool) -> (Severity, Code) {
@@ -42,220 +41,214 @@ impl From<&Lost> for Finding {
     }
 }
 
-impl Finding {
-    /// The verdict on the recordings that a model was made from.
-    pub(crate) fn verdict_of_fit(model: &Model) -> Self {
-        let Verdict { enclosure, rows, violations, runs, .. } = &model.proof;
-        let how = match enclosure {
-            Enclosure::Inner => "proved with directed rounding",
-            Enclosure::Outer => {
-                "lie in the computed outer set, an enclosure with directed rounding"
-            }
-        };
-        let text = format!(
-            "{}: {}; {} of {rows} rows{} (suite, sample, state) {how}, at samples{}",
-            Self::outcome_of_fit(model),
-            Self::recordings_of_fit(model),
-            rows - violations.count,
-            model.settings.states.of_words(),
-            model.settings.until_words(),
-        );
-        let (severity, code) = outcome(model.verified);
-        Self::new(severity, code, text)
-            .with("until", model.settings.until.unwrap_or(f64::INFINITY))
-            .with("recordings", *runs as f64)
-            .with("rows", *rows as f64)
-            .with("rows_outside", violations.count as f64)
-    }
+/// The verdict on the recordings that a model was made from.
+pub(crate) fn verdict_of_fit(model: &Model) -> Finding {
+    let Verdict { enclosure, rows, violations, runs, .. } = &model.proof;
+    let how = match enclosure {
+        Enclosure::Inner => "proved with directed rounding",
+        Enclosure::Outer => "lie in the computed outer set, an enclosure with directed rounding",
+    };
+    let text = format!(
+        "{}: {}; {} of {rows} rows{} (suite, sample, state) {how}, at samples{}",
+        outcome_of_fit(model),
+        recordings_of_fit(model),
+        rows - violations.count,
+        model.settings.states.of_words(),
+        model.settings.until_words(),
+    );
+    let (severity, code) = outcome(model.verified);
+    Finding::new(severity, code, text)
+        .with("until", model.settings.until.unwrap_or(f64::INFINITY))
+        .with("recordings", *runs as f64)
+        .with("rows", *rows as f64)
+        .with("rows_outside", violations.count as f64)
+}
 
-    /// Returns the verdict in one or two words.
-    pub(crate) fn outcome_of_fit(model: &Model) -> &'static str {
-        match (model.verified, model.gap_of_not_minimal()) {
-            _ if model.is_vacuous() => "conformant, but vacuous",
-            (false, _) => "NOT PROVED conformant",
-            (true, Some(_)) => "conformant, not minimal",
-            (true, None) => "conformant",
+/// Returns the verdict in one or two words.
+pub(crate) fn outcome_of_fit(model: &Model) -> &'static str {
+    match (model.verified, model.gap_of_not_minimal()) {
+        _ if model.is_vacuous() => "conformant, but vacuous",
+        (false, _) => "NOT PROVED conformant",
+        (true, Some(_)) => "conformant, not minimal",
+        (true, None) => "conformant",
+    }
+}
+
+/// Counts the recordings and suites that a model was made from.
+pub(crate) fn recordings_of_fit(model: &Model) -> String {
+    format!(
+        "{} in {}",
+        counted(model.data.run_count(), "recording"),
+        counted(model.data.suites.len(), "suite")
+    )
+}
+
+/// Returns where the first reachable set ends before its suite, and the number of the others.
+pub(crate) fn lost_in_brief(lost: &[Lost]) -> Option<String> {
+    let (Lost { case, time, state, nominal }, others) = lost.split_first()?;
+    let more = match others.len() {
+        0 => String::new(),
+        others => format!("; so do {others} more"),
+    };
+    let what = if *nominal { "the nominal motion runs away after" } else { "the set ends at" };
+    Some(format!("{case}: {what} {time:.3} s, where {state} grew fastest{more}"))
+}
+
+/// The verdict on recordings that are compared with a model.
+pub(crate) fn verdict_of_check(verdict: &Verdict, settings: &Settings) -> Finding {
+    let Verdict { runs, rows, violations, .. } = verdict;
+    let (severity, code) = outcome(verdict.conformant);
+    let text = format!(
+        "{}: {}; {} of {rows} rows{} (suite, sample, state) outside the {}, at samples{}",
+        if verdict.conformant { "conformant" } else { "not conformant" },
+        counted(*runs, "recording"),
+        violations.count,
+        settings.states.of_words(),
+        verdict.enclosure.set_name(),
+        settings.until_words(),
+    );
+    Finding::new(severity, code, text)
+        .with("until", settings.until.unwrap_or(f64::INFINITY))
+        .with("recordings", *runs as f64)
+        .with("rows", *rows as f64)
+        .with("rows_outside", violations.count as f64)
+}
+
+/// How many recorded points were proved to lie in the reachable set.
+pub(crate) fn points(verdict: &Verdict, states: States) -> Option<Finding> {
+    let PointVerdict { points, unproved, outside, notion, .. } = verdict.points.as_ref()?;
+    let (set, are_lost) = (verdict.enclosure.set_name(), !verdict.lost.is_empty());
+    let rest = match (unproved - outside, outside) {
+        (0, 0) => String::new(),
+        (0, outside) => format!("; {outside} lie outside"),
+        (lost, outside) if are_lost => {
+            format!("; {outside} lie outside, and {lost} were not judged because a set was lost")
         }
-    }
+        (close, outside) => format!(
+            "; {outside} lie outside, and {close} lie too close to the boundary to be proved \
+             (sets that were found for this notion leave room for a proof)"
+        ),
+    };
+    let severity = if *unproved == 0 { Severity::Info } else { Severity::Failure };
+    let text = format!(
+        "{} of {points} recorded points ({}) proved to lie in the {set}{rest}",
+        points - unproved,
+        states.together(*notion),
+    );
+    let finding = Finding::new(severity, Code::Points, text)
+        .with("points", *points as f64)
+        .with("unproved", *unproved as f64)
+        .with("outside", *outside as f64);
+    Some(finding)
+}
 
-    /// Counts the recordings and suites that a model was made from.
-    pub(crate) fn recordings_of_fit(model: &Model) -> String {
-        format!(
-            "{} in {}",
-            counted(model.data.run_count(), "recording"),
-            counted(model.data.suites.len(), "suite")
-        )
-    }
+/// The point that lies furthest outside.
+pub(crate) fn furthest_point(worst: &PointWitness, kinds: &[JointKind]) -> Finding {
+    let PointWitness { run, time, combination, value, reach, .. } = worst;
+    let state = worst.leading_state();
+    let text = format!(
+        "Furthest outside: {run} at {time:.3} s, where {combination} is {} {unit} from the \
+         centre of the set, which reaches {} {unit}.",
+        four_decimals(*value),
+        four_decimals(*reach),
+        unit = state.kind.unit(kinds[state.joint]),
+    );
+    Finding::new(Severity::Failure, Code::FurthestOutside, text)
+        .at(run)
+        .with("time", *time)
+        .with("value", *value)
+        .with("reach", *reach)
+}
 
-    /// Returns where the first reachable set ends before its suite, and the number of the others.
-    pub(crate) fn lost_in_brief(lost: &[Lost]) -> Option<String> {
-        let (Lost { case, time, state, nominal }, others) = lost.split_first()?;
-        let more = match others.len() {
-            0 => String::new(),
-            others => format!("; so do {others} more"),
-        };
-        let what = if *nominal { "the nominal motion runs away after" } else { "the set ends at" };
-        Some(format!("{case}: {what} {time:.3} s, where {state} grew fastest{more}"))
-    }
+/// The value that lies furthest outside.
+pub(crate) fn furthest_value(worst: &Witness, kinds: &[JointKind]) -> Finding {
+    let text = format!("Furthest outside: {}.", place_outside(worst, kinds));
+    Finding::new(Severity::Failure, Code::FurthestOutside, text)
+        .at(&worst.run)
+        .with("time", worst.time)
+        .with("joint", worst.joint as f64)
+        .with("excess", worst.excess)
+}
 
-    /// The verdict on recordings that are compared with a model.
-    pub(crate) fn verdict_of_check(verdict: &Verdict, settings: &Settings) -> Self {
-        let Verdict { runs, rows, violations, .. } = verdict;
-        let (severity, code) = outcome(verdict.conformant);
-        let text = format!(
-            "{}: {}; {} of {rows} rows{} (suite, sample, state) outside the {}, at samples{}",
-            if verdict.conformant { "conformant" } else { "not conformant" },
-            counted(*runs, "recording"),
-            violations.count,
-            settings.states.of_words(),
-            verdict.enclosure.set_name(),
-            settings.until_words(),
-        );
-        Self::new(severity, code, text)
-            .with("until", settings.until.unwrap_or(f64::INFINITY))
-            .with("recordings", *runs as f64)
-            .with("rows", *rows as f64)
-            .with("rows_outside", violations.count as f64)
-    }
+/// Describes a value outside the reachable set in one line.
+pub(crate) fn place_outside(place: &Witness, kinds: &[JointKind]) -> String {
+    let unit = place.state.kind.unit(kinds[place.state.joint]);
+    format!(
+        "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
+        place.run,
+        place.time,
+        place.joint,
+        place.state,
+        four_decimals(place.excess),
+        format!("{:?}", place.side).to_lowercase()
+    )
+}
 
-    /// How many recorded points were proved to lie in the reachable set.
-    pub(crate) fn points(verdict: &Verdict, states: States) -> Option<Self> {
-        let PointVerdict { points, unproved, outside, notion, .. } = verdict.points.as_ref()?;
-        let (set, are_lost) = (verdict.enclosure.set_name(), !verdict.lost.is_empty());
-        let rest = match (unproved - outside, outside) {
-            (0, 0) => String::new(),
-            (0, outside) => format!("; {outside} lie outside"),
-            (lost, outside) if are_lost => {
-                format!(
-                    "; {outside} lie outside, and {lost} were not judged because a set was lost"
-                )
+/// Where a simulated motion diverged.
+pub(crate) fn unstable(case: &str, time: f64) -> Finding {
+    let text = format!(
+        "{case}: a simulated motion under nearly these sets diverged before {time:.3} s; the \
+         model is unstable there."
+    );
+    Finding::new(Severity::Warning, Code::Unstable, text).at(case).with("time", time)
+}
+
+/// What the sets cost, and how far that is from the optimum, where it is known.
+pub(crate) fn cost(model: &Model) -> Finding {
+    let Some(cost) = model.cost else {
+        let text = "no cost: a reachable set could not be computed to the end";
+        return Finding::new(Severity::Info, Code::Cost, text);
+    };
+    let quality = match (model.cost_lower_bound, &model.search) {
+        (Some(bound), _) => {
+            let optimal = match (model.gap_of_not_minimal(), model.optimality_gap) {
+                (Some(_), _) => "NOT optimal".into(),
+                (None, Some(gap)) if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
+                (None, _) => "optimal".into(),
+            };
+            // A fit ends in a local optimum: other nominal models may have smaller sets.
+            let optimal = match &model.fit {
+                Some(fit) if fit.taken => format!("{optimal} for this nominal model"),
+                _ => optimal,
+            };
+            // A bound with the digits of the cost is not printed.
+            match four_decimals(bound) {
+                bound if bound == four_decimals(cost) => format!(" ({optimal})"),
+                bound => format!(" ({optimal}; lower bound {bound})"),
             }
-            (close, outside) => format!(
-                "; {outside} lie outside, and {close} lie too close to the boundary to be proved \
-                 (sets that were found for this notion leave room for a proof)"
-            ),
-        };
-        let severity = if *unproved == 0 { Severity::Info } else { Severity::Failure };
-        let text = format!(
-            "{} of {points} recorded points ({}) proved to lie in the {set}{rest}",
-            points - unproved,
-            states.together(*notion),
-        );
-        let finding = Self::new(severity, Code::Points, text)
-            .with("points", *points as f64)
-            .with("unproved", *unproved as f64)
-            .with("outside", *outside as f64);
-        Some(finding)
-    }
+        }
+        (None, Some(search)) => format!(" ({})", search_words(search)),
+        (None, None) if model.calibration.is_some() => " (calibrated, not the smallest)".into(),
+        (None, None) if !model.allowance.is_empty() => {
+            " (with an allowance, not the smallest)".into()
+        }
+        (None, None) => String::new(),
+    };
+    // Files of versions before the cost by time have sums over samples alone.
+    let sum = match model.cost_of_samples {
+        Some(sum) => format!(
+            "integrated over time; summed over samples, as in the paper: {}",
+            four_decimals(sum)
+        ),
+        None => "summed over samples".into(),
+    };
+    let text = format!(
+        "cost {}{quality}: weighted widths of the reachable sets, summed over states and {sum}",
+        four_decimals(cost)
+    );
+    Finding::new(Severity::Info, Code::Cost, text)
+        .with("cost", cost)
+        .with("cost_of_samples", model.cost_of_samples.unwrap_or(f64::NAN))
+        .with("lower_bound", model.cost_lower_bound.unwrap_or(f64::NAN))
+}
 
-    /// The point that lies furthest outside.
-    pub(crate) fn furthest_point(worst: &PointWitness, kinds: &[JointKind]) -> Self {
-        let PointWitness { run, time, combination, value, reach, .. } = worst;
-        let state = worst.leading_state();
-        let text = format!(
-            "Furthest outside: {run} at {time:.3} s, where {combination} is {} {unit} from the \
-             centre of the set, which reaches {} {unit}.",
-            four_decimals(*value),
-            four_decimals(*reach),
-            unit = state.kind.unit(kinds[state.joint]),
-        );
-        Self::new(Severity::Failure, Code::FurthestOutside, text)
-            .at(run)
-            .with("time", *time)
-            .with("value", *value)
-            .with("reach", *reach)
-    }
-
-    /// The value that lies furthest outside.
-    pub(crate) fn furthest_value(worst: &Witness, kinds: &[JointKind]) -> Self {
-        let text = format!("Furthest outside: {}.", Self::place_outside(worst, kinds));
-        Self::new(Severity::Failure, Code::FurthestOutside, text)
-            .at(&worst.run)
-            .with("time", worst.time)
-            .with("joint", worst.joint as f64)
-            .with("excess", worst.excess)
-    }
-
-    /// Describes a value outside the reachable set in one line.
-    pub(crate) fn place_outside(place: &Witness, kinds: &[JointKind]) -> String {
-        let unit = place.state.kind.unit(kinds[place.state.joint]);
-        format!(
-            "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
-            place.run,
-            place.time,
-            place.joint,
-            place.state,
-            four_decimals(place.excess),
-            format!("{:?}", place.side).to_lowercase()
-        )
-    }
-
-    /// Where a simulated motion diverged.
-    pub(crate) fn unstable(case: &str, time: f64) -> Self {
-        let text = format!(
-            "{case}: a simulated motion under nearly these sets diverged before {time:.3} s; the \
-             model is unstable there."
-        );
-        Self::new(Severity::Warning, Code::Unstable, text).at(case).with("time", time)
-    }
-
-    /// What the sets cost, and how far that is from the optimum, where it is known.
-    pub(crate) fn cost(model: &Model) -> Self {
-        let Some(cost) = model.cost else {
-            let text = "no cost: a reachable set could not be computed to the end";
-            return Self::new(Severity::Info, Code::Cost, text);
-        };
-        let quality = match (model.cost_lower_bound, &model.search) {
-            (Some(bound), _) => {
-                let optimal = match (model.gap_of_not_minimal(), model.optimality_gap) {
-                    (Some(_), _) => "NOT optimal".into(),
-                    (None, Some(gap)) if gap > 0.0 => format!("optimal to a relative {gap:.0e}"),
-                    (None, _) => "optimal".into(),
-                };
-                // A fit ends in a local optimum: other nominal models may have smaller sets.
-                let optimal = match &model.fit {
-                    Some(fit) if fit.taken => format!("{optimal} for this nominal model"),
-                    _ => optimal,
-                };
-                // A bound with the digits of the cost is not printed.
-                match four_decimals(bound) {
-                    bound if bound == four_decimals(cost) => format!(" ({optimal})"),
-                    bound => format!(" ({optimal}; lower bound {bound})"),
-                }
-            }
-            (None, Some(search)) => format!(" ({})", search_words(search)),
-            (None, None) if model.calibration.is_some() => " (calibrated, not the smallest)".into(),
-            (None, None) if !model.allowance.is_empty() => {
-                " (with an allowance, not the smallest)".into()
-            }
-            (None, None) => String::new(),
-        };
-        // Files of versions before the cost by time have sums over samples alone.
-        let sum = match model.cost_of_samples {
-            Some(sum) => format!(
-                "integrated over time; summed over samples, as in the paper: {}",
-                four_decimals(sum)
-            ),
-            None => "summed over samples".into(),
-        };
-        let text = format!(
-            "cost {}{quality}: weighted widths of the reachable sets, summed over states and {sum}",
-            four_decimals(cost)
-        );
-        Self::new(Severity::Info, Code::Cost, text)
-            .with("cost", cost)
-            .with("cost_of_samples", model.cost_of_samples.unwrap_or(f64::NAN))
-            .with("lower_bound", model.cost_lower_bound.unwrap_or(f64::NAN))
-    }
-
-    /// That the sets are not the smallest.
-    pub(crate) fn not_smallest(gap: f64) -> Self {
-        let text = format!(
-            "The sets enclose the recordings but are not the smallest: the solver stopped above \
-             its lower bound (relative gap {gap:.1e})."
-        );
-        Self::new(Severity::Warning, Code::NotSmallest, text).with("gap", gap)
-    }
+/// That the sets are not the smallest.
+pub(crate) fn not_smallest(gap: f64) -> Finding {
+    let text = format!(
+        "The sets enclose the recordings but are not the smallest: the solver stopped above \
+         its lower bound (relative gap {gap:.1e})."
+    );
+    Finding::new(Severity::Warning, Code::NotSmallest, text).with("gap", gap)
 }
 
 fn search_words(search: &SearchSummary) -> String {

@@ -3,9 +3,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::result::code::Code;
-use crate::result::front_end::FrontEnd;
-use crate::result::remedy::Remedy;
+use crate::code::Code;
+use crate::front_end::FrontEnd;
+use crate::remedy::Remedy;
 
 /// How much a finding matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -25,18 +25,18 @@ pub enum Severity {
 /// # Examples
 ///
 /// ```
-/// use reachtube_conform::Finding;
-/// use reachtube_conform::result::{Code, FrontEnd, Remedy, Severity};
+/// use reachtube_finding::{Code, Finding, FrontEnd, Remedy, Severity};
 ///
 /// let remedy = Remedy {
 ///     setting: "until".into(),
 ///     value: "1.204".into(),
 ///     effect: "uses only the samples before.".into(),
 /// };
+/// let lost = Code::new("set-lost");
 /// let finding = Finding {
 ///     place: Some("suite A".into()),
 ///     remedy: Some(remedy),
-///     ..Finding::new(Severity::Failure, Code::SetLost, "The reachable set ends at 1.204 s.")
+///     ..Finding::new(Severity::Failure, lost, "The reachable set ends at 1.204 s.")
 /// };
 /// assert_eq!(
 ///     finding.to_string(),
@@ -67,8 +67,8 @@ pub struct Finding {
 impl Finding {
     /// Makes a finding without place, numbers and remedy.
     #[must_use]
-    pub fn new(severity: Severity, code: Code, text: impl Into<String>) -> Self {
-        let text = text.into();
+    pub fn new(severity: Severity, code: impl Into<Code>, text: impl Into<String>) -> Self {
+        let (code, text) = (code.into(), text.into());
         Self { severity, code, place: None, numbers: BTreeMap::new(), text, remedy: None }
     }
 
@@ -88,7 +88,8 @@ impl Finding {
     }
 
     /// Sets the remedy.
-    pub(crate) fn remedied_by(self, remedy: impl Into<Option<Remedy>>) -> Self {
+    #[must_use]
+    pub fn remedied_by(self, remedy: impl Into<Option<Remedy>>) -> Self {
         Self { remedy: remedy.into(), ..self }
     }
 

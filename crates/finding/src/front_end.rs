@@ -27,7 +27,7 @@ const LISTS: [&str; 4] = ["calibrate", "expansion", "fit", "suites"];
 
 impl Setting {
     /// Makes a setting with a value, or leaves its value to the user.
-    pub(crate) fn new(name: &'static str, value: impl Into<String>) -> Self {
+    pub fn new(name: &'static str, value: impl Into<String>) -> Self {
         Self { name, value: value.into() }
     }
 
@@ -55,7 +55,7 @@ impl FrontEnd {
 
     /// Returns a setting with its value, as users of the front end write it.
     #[must_use]
-    pub(crate) fn setting(self, name: &str, value: Option<&str>) -> String {
+    pub fn setting(self, name: &str, value: Option<&str>) -> String {
         match (self, value) {
             (Self::Windows, _) => Self::CommandLine.setting(self.name_of(name), value),
             (Self::CommandLine, None | Some("true")) => format!("--{name}"),

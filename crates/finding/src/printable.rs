@@ -4,7 +4,7 @@
 /// # Examples
 ///
 /// ```
-/// assert_eq!(reachtube_files::printable("arm\u{1b}[2J"), "arm\\u{1b}[2J");
+/// assert_eq!(reachtube_finding::printable("arm\u{1b}[2J"), "arm\\u{1b}[2J");
 /// ```
 #[must_use]
 pub fn printable(text: &str) -> String {

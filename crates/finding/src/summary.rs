@@ -1,8 +1,8 @@
 use std::fmt;
 
-use reachtube_files::printable;
+use crate::printable::printable;
 
-use crate::result::table::Table;
+use crate::table::Table;
 
 /// Largest number of lines.
 const LINES: usize = 15;
@@ -14,12 +14,12 @@ const COLUMNS: usize = 100;
 const FEWEST_ROWS: usize = 2;
 
 /// An answer for people on at most 15 lines of 100 columns. The
-/// [`Report`](crate::result::Report) has the rest.
+/// [`Report`](crate::Report) has the rest.
 ///
 /// # Examples
 ///
 /// ```
-/// use reachtube_conform::result::Summary;
+/// use reachtube_finding::Summary;
 ///
 /// let verdict = vec!["conformant: 6 recordings".into()];
 /// let mut summary = Summary { verdict, ..Summary::default() };

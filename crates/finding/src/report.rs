@@ -1,11 +1,11 @@
 use std::fmt::{self, Write};
 
-use reachtube_files::printable;
+use crate::printable::printable;
 use serde::Serialize;
 
-use crate::result::finding::{Finding, Severity};
-use crate::result::front_end::FrontEnd;
-use crate::result::table::Table;
+use crate::finding::{Finding, Severity};
+use crate::front_end::FrontEnd;
+use crate::table::Table;
 
 /// An answer for people: findings, facts and tables in the order in which they are read.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -51,13 +51,14 @@ impl fmt::Display for Report {
 }
 
 impl Section {
-    pub(crate) fn is_empty(&self) -> bool {
+    /// Returns whether the section is empty.
+    pub fn is_empty(&self) -> bool {
         let Self { findings, tables, facts, .. } = self;
         findings.is_empty() && tables.is_empty() && facts.is_empty()
     }
 
     /// Adds a fact.
-    pub(crate) fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
+    pub fn fact(&mut self, name: impl Into<String>, value: impl Into<String>) {
         self.facts.push((name.into(), value.into()));
     }
 

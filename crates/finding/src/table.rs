@@ -1,6 +1,6 @@
 use std::fmt;
 
-use reachtube_files::printable;
+use crate::printable::printable;
 use serde::Serialize;
 
 /// A table of texts, of which the first column names the row.
@@ -28,7 +28,7 @@ impl Table {
     }
 
     /// Keeps the first rows only, and counts the others.
-    pub(crate) fn cut_to(mut self, most: usize) -> Self {
+    pub fn cut_to(mut self, most: usize) -> Self {
         self.more = self.rows.len().saturating_sub(most);
         self.rows.truncate(most);
         self

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use crate::result::front_end::{FrontEnd, Setting};
+use crate::front_end::{FrontEnd, Setting};
 
 /// The problem, the remedy, and the settings that apply it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub struct Advice {
 
 impl Advice {
     /// Adds a setting that helps.
-    pub(crate) fn with(mut self, name: &'static str, value: &str) -> Self {
+    pub fn with(mut self, name: &'static str, value: &str) -> Self {
         self.settings.push(Setting::new(name, value));
         self
     }
@@ -39,7 +39,7 @@ impl fmt::Display for Advice {
 }
 
 /// Returns a text with the settings that help in brackets, as users of a front end write them.
-pub(crate) fn advised(text: String, settings: &[Setting], front_end: FrontEnd) -> String {
+pub fn advised(text: String, settings: &[Setting], front_end: FrontEnd) -> String {
     let written: Vec<String> =
         settings.iter().map(|setting| setting.written_for(front_end)).collect();
     if written.is_empty() { text } else { format!("{text} ({})", written.join(", ")) }

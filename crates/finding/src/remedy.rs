@@ -2,7 +2,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::result::front_end::FrontEnd;
+use crate::front_end::FrontEnd;
 
 /// A setting that helps, and what it does. Each front end writes it in its own form.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,7 +44,7 @@ impl Remedy {
     /// # Panics
     ///
     /// Panics for a setting whose effect is not listed.
-    pub(crate) fn new(setting: &str, value: impl Into<String>) -> Self {
+    pub fn new(setting: &str, value: impl Into<String>) -> Self {
         let known = EFFECTS.iter().find(|(name, _)| *name == setting);
         let (name, effect) = known.expect("the effect of each remedy is listed");
         Self { setting: Cow::Borrowed(name), value: value.into(), effect: Cow::Borrowed(effect) }
@@ -52,13 +52,13 @@ impl Remedy {
 
     /// Makes the remedy that uses only the samples before `time`, s.
     #[must_use]
-    pub(crate) fn until(time: f64) -> Self {
+    pub fn until(time: f64) -> Self {
         Self::new("until", format!("{time:.3}"))
     }
 
     /// Returns the remedy as a sentence, as users of a front end write settings.
     #[must_use]
-    pub(crate) fn written_for(&self, front_end: FrontEnd) -> String {
+    pub fn written_for(&self, front_end: FrontEnd) -> String {
         let Self { setting, value, effect } = self;
         let own = front_end.name_of(setting);
         if own != setting {

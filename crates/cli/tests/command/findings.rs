@@ -1,0 +1,14 @@
+//! Every code of a finding is in docs/reference.md.
+
+use reachtube::{conform, pipeline, verify};
+
+#[test]
+fn every_code_is_in_the_docs() {
+    let docs = include_str!("../../../../docs/reference.md");
+    let of_models = conform::Code::ALL.iter().map(|code| code.name());
+    let of_logs = pipeline::Code::ALL.iter().map(|code| code.name());
+    let of_scenarios = verify::Code::ALL.iter().map(|code| code.name());
+    for name in of_models.chain(of_logs).chain(of_scenarios) {
+        assert!(docs.contains(&format!("| `{name}` |")), "{name}");
+    }
+}

@@ -1,0 +1,13 @@
+reachtube_finding::codes! {
+    /// What a finding about logs, and about a model made of them, is about.
+    pub enum Code {
+        /// What a choice that was not applied would give.
+        WouldHelp = "would-help",
+        /// The recordings contradict the robot's description, or the dynamics of rigid bodies.
+        Contradiction = "contradiction",
+        /// Positions that were whole turns away from other recordings were moved.
+        TurnsMoved = "turns-moved",
+        /// The torques were measured behind the gears, and the inertia of motors is unknown.
+        MotorsUnknown = "motors-unknown",
+    }
+}
