@@ -12,6 +12,10 @@ use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
 use crate::text::quoted;
 
+const NUMBER: &str = "every value must be a number: cut the run before this line, or record again";
+
+const DECIMAL: &str = "write times as decimal numbers, or cut the run before this line";
+
 /// Number of defects after which a file is not read on.
 const MOST_DEFECTS: usize = 1000;
 
@@ -271,7 +275,7 @@ impl Reader<'_> {
             }
             let is_possible = self.columns[place].limits.is_none_or(|limits| within(limits, value));
             if !value.is_finite() || !is_possible {
-                self.bad_value(line, place, value, &text);
+                self.bad_value(line, place, value, fields[self.columns[place].at]);
             }
         }
         if self.defects.len() == before && self.keeps(line) {
@@ -326,14 +330,14 @@ impl Reader<'_> {
                 "if no velocity was measured, delete the columns of qd; `model` derives them",
             ),
             _ => (
-                match text.is_empty() {
-                    true => format!("{name} is empty"),
-                    false => {
-                        let text = String::from_utf8_lossy(text);
-                        format!("{name} is {}, not a finite number", quoted(&text))
-                    }
+                match String::from_utf8_lossy(text) {
+                    text if text.is_empty() => format!("{name} is empty"),
+                    text => format!("{name} is {}, not a finite number", quoted(&text)),
                 },
-                "every value must be a number: cut the run before this line, or record again",
+                match quantity {
+                    Quantity::Time => DECIMAL,
+                    _ => NUMBER,
+                },
             ),
         };
         let kind = if is_number { DefectKind::Units } else { DefectKind::Value };

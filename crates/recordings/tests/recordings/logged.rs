@@ -267,6 +267,7 @@ fn wrong_cells_and_times_are_named_with_line_and_column() {
         ("t,pos1,tau1\n0,nan,1\n", "log.csv:2: column \"pos1\" is \"nan\", not a finite number"),
         ("t,pos1,tau1\n0,1,1e300\n", "log.csv:2: column \"tau1\" is 1e300, which no joint has"),
         ("t,pos1,tau1\n\n0,1,on\n", "log.csv:3: column \"tau1\" is \"on\""),
+        ("t;pos1;tau1\n0;1,5x;1\n", "log.csv:2: column \"pos1\" is \"1,5x\", not a finite"),
         ("t,pos1,tau1\n0,,1\n", "log.csv:2: column \"pos1\" is empty"),
         ("t,pos1,tau1\n0,1,1\n1,1\n", "log.csv:3: the line has 2 fields, but the header has 3"),
         ("t,pos1,tau1\n1,1,1\n1,1,1\n", "log.csv:3: t = 1 is the time of the line above"),
