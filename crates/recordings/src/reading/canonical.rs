@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::dialect::Dialect;
 use super::name::Quantity;
-use super::table::{LARGEST, ReadColumn, Table};
+use super::table::{ReadColumn, Table};
 use super::time_column::TimeColumns;
 use super::unit::TimeUnit;
 use crate::defect::{Defect, DefectKind};
@@ -61,7 +61,7 @@ pub(super) fn content(path: &Path) -> Result<Vec<u8>, Vec<Defect>> {
 /// ```
 pub fn parse_csv(name: &Path, content: &[u8], options: &ReadOptions) -> Result<Run, Vec<Defect>> {
     let dialect = Dialect::of(name, content).map_err(|defect| vec![*defect])?;
-    let (mut run, _) = recording(name, content, &dialect, &[], options)?;
+    let (mut run, _) = recording(name, content, &dialect, (&[], None), options)?;
     run.sha256 = hex(&Sha256::digest(content));
     run.truncate(options.until);
     Ok(run)
@@ -75,12 +75,13 @@ pub(super) fn is_recording(dialect: &Dialect) -> bool {
 }
 
 /// Reads a whole recording, of which joint i of the result is joint `places[i]` of the file, from
-/// 0; without places, all are in the order of the file. The SHA-256 of the result is empty.
+/// 0; without places, all are in the order of the file. Positions must lie within `limits`, if they
+/// are given. The SHA-256 of the result is empty.
 pub(super) fn recording(
     path: &Path,
     bytes: &[u8],
     dialect: &Dialect,
-    places: &[usize],
+    (places, limits): (&[usize], Option<[f64; 2]>),
     options: &ReadOptions,
 ) -> Result<(Run, Table), Vec<Defect>> {
     let (n, temperatures) = joints(dialect, options.joints).map_err(|wrong| {
@@ -93,7 +94,7 @@ pub(super) fn recording(
         unit: Some(TimeUnit::Seconds),
         name: dialect.names[0].clone(),
     };
-    let columns = columns(dialect, n, temperatures);
+    let columns = columns(dialect, n, temperatures, limits);
     let (table, mut defects) = Table::read(path, bytes, dialect, &time, columns);
     defects.extend(table.gaps(path, 1, options.gap_limit));
     if !defects.is_empty() {
@@ -178,16 +179,20 @@ fn first_wrong(names: &[String], n: usize) -> Option<(usize, String)> {
     expected.find(|(at, name)| names.get(*at) != Some(name))
 }
 
-fn columns(dialect: &Dialect, n: usize, temperatures: Option<usize>) -> Vec<ReadColumn<'_>> {
+fn columns(
+    dialect: &Dialect,
+    n: usize,
+    temperatures: Option<usize>,
+    limits: Option<[f64; 2]>,
+) -> Vec<ReadColumn<'_>> {
     let column = |at: usize, joint: usize, quantity: Quantity| ReadColumn {
         at,
         name: dialect.names[at].as_str().into(),
         joint: Some(joint).filter(|joint| *joint > 0),
         quantity,
         limits: match quantity {
-            Quantity::Position => Some([-LARGEST, LARGEST]),
+            Quantity::Position => limits,
             Quantity::Temperature => Some(JOINT_TEMPERATURES),
-            // The checks of units name the others, which nothing unwraps before.
             _ => None,
         },
     };

@@ -14,7 +14,7 @@ use super::name::Quantity;
 use super::options::LoggedOptions;
 use super::recognise::{Numbers, Units, recognise};
 use super::settings::ColumnSettings;
-use super::table::{LARGEST, ReadColumn, Table};
+use super::table::{ReadColumn, Table};
 use super::understood::Understood;
 use crate::defect::{Defect, DefectKind};
 use crate::run::Run;
@@ -24,6 +24,9 @@ use crate::unwrap::take_out_turns;
 
 /// A joint that leaves its first position by more than this moves, rad or m.
 const MOVES: f64 = 0.05;
+
+/// No quantity of a joint is beyond these in any unit.
+const POSSIBLE: [f64; 2] = [-1e9, 1e9];
 
 /// A recording of a log, and what was understood of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,7 +117,8 @@ fn as_it_is(
     let joints = options.robot.map(Robot::joint_count);
     let read = ReadOptions { joints, gap_limit: options.gap_limit, until: None };
     let of_robot = Joints::of_robot(options).unwrap_or_default();
-    let (mut run, table) = recording(&files[0], content, dialect, &of_robot.places, &read)?;
+    let (mut run, table) =
+        recording(&files[0], content, dialect, (&of_robot.places, Some(POSSIBLE)), &read)?;
     let names = match options.robot {
         Some(_) => of_robot.names,
         None => (1..=run.joints).map(|joint| format!("joint {joint}")).collect(),
@@ -229,7 +233,7 @@ impl Log<'_> {
                 name: format!("column {}", quoted(&dialect.names[at])).into(),
                 joint: None,
                 quantity,
-                limits: (quantity != Quantity::Time).then_some([-LARGEST, LARGEST]),
+                limits: (quantity != Quantity::Time).then_some(POSSIBLE),
             };
             let times = std::iter::once(time.at).chain(time.nanoseconds);
             let mut columns: Vec<_> = times.map(|at| column(at, Quantity::Time)).collect();

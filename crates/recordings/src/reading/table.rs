@@ -19,9 +19,6 @@ const DECIMAL: &str = "write times as decimal numbers, or cut the run before thi
 /// Number of defects after which a file is not read on.
 const MOST_DEFECTS: usize = 1000;
 
-/// No quantity of a joint is beyond this in any unit.
-pub(super) const LARGEST: f64 = 1e9;
-
 /// A column of a file that is read.
 #[derive(Debug)]
 pub(super) struct ReadColumn<'a> {
