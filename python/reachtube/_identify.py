@@ -198,7 +198,7 @@ def identify(
     torque
         What the recorded torques are: ``"motor"`` (motor torque at the output side of the gear) or
         ``"link"`` (link-side torque, which does not drive the motors' inertia); as the settings say
-        where it is not given, and they say motor by default.
+        if it is not given, and they say motor by default.
     progress
         As for `conform`.
 

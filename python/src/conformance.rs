@@ -128,7 +128,7 @@ pub(crate) fn fit_settings(groups: &[String], pull: Option<f64>) -> Result<Optio
     }
 }
 
-/// Returns the failure about a pull where nothing is fitted.
+/// Returns the failure about a pull if nothing is fitted.
 pub(crate) fn pull_without_fit() -> Failure {
     Failure::Setting("pull is the weight of a fit, and fit names no group".into())
 }
@@ -152,7 +152,7 @@ pub(crate) fn differing(setup: Setup, mut given: Map<String, Value>) -> Result<S
     Ok(setup.judged_by(notion, until, take::<f64>(&mut given, "max_gap")?.into()))
 }
 
-/// What is read for a model: the recordings, and what differs from the model's settings.
+/// The recordings that a model needs: the recordings, and what differs from the model's settings.
 pub(crate) struct Wanted {
     pub model: String,
     pub source: SharedSource,

@@ -1,4 +1,4 @@
-//! What an answer says, as users of Python write settings.
+//! The findings of an answer, with settings as users of Python write them.
 
 use pyo3::prelude::*;
 use reachtube::conform::Model;

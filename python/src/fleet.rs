@@ -19,7 +19,7 @@ use crate::recordings::NativeRun;
 use crate::robot::NativeRobot;
 use crate::watched::watched;
 
-/// How the recordings of a fleet are folded: to find sets, or to check a model.
+/// Settings for folding the recordings of a fleet: to find sets, or to check a model.
 #[pyclass(frozen, name = "Fleet", module = "reachtube._reachtube")]
 pub(crate) struct NativeFleet {
     setup: Arc<Setup>,

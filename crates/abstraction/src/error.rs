@@ -10,7 +10,7 @@ pub enum Error {
     /// The paper has no model of this number.
     #[error("there is no model {number}; give 1, 2 or 3")]
     UnknownModel {
-        /// The number asked for.
+        /// The requested number.
         number: u32,
     },
     /// The order of a model is 0.
@@ -24,7 +24,7 @@ pub enum Error {
         limit / 1e9
     )]
     TooManyTerms {
-        /// Order asked for.
+        /// The requested order.
         order: u32,
         /// Number of joints n.
         joints: usize,
@@ -94,7 +94,7 @@ pub enum Error {
     ModelFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong and what to do.
+        /// The problem and the remedy.
         problem: String,
     },
     /// A file could not be read or written.

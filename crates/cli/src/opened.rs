@@ -71,7 +71,7 @@ impl OpenedCheck {
         print_notes(&self.model, &self.problem, args.until, "--until changes the limit");
     }
 
-    /// Prints a warning for each reason why the sets say less of the robot than of the model.
+    /// Prints a warning for each reason why the sets need not hold for the robot.
     pub(crate) fn warn_beyond_proof(&self) {
         let warnings = self.model.beyond_proof(&self.problem);
         warnings.iter().for_each(|warning| output::warn(&warning.text));

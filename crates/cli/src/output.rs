@@ -38,7 +38,6 @@ pub(crate) fn print_verdict(text: &str, outcome: &Outcome) -> Result<()> {
     written(anstream::stdout().lock(), coloured.as_bytes())
 }
 
-/// Returns a word in bold and a colour.
 fn painted(word: &str, colour: AnsiColor) -> String {
     let style = Style::new().bold().fg_color(Some(colour.into()));
     format!("{style}{word}{style:#}")

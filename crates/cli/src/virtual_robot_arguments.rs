@@ -7,10 +7,10 @@ use reachtube::virtual_robot::VirtualRobotParameters;
 
 use crate::error::{Error, Result};
 
-/// Where a file of parameters does not open.
+/// Remedy if a file of parameters cannot be opened.
 const REMEDY: &str = "give a TOML file with parameters of the virtual robot, as docs/paper.md has";
 
-/// How the virtual robot differs from its nominal model.
+/// Parameters of the virtual robot.
 #[derive(Debug, Args)]
 pub(crate) struct VirtualRobotArguments {
     /// TOML file with parameters of the virtual robot, see docs/paper.md

@@ -30,7 +30,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// Fits the nominal model of a problem if `fit` asks for it, finds the smallest sets and proves
+    /// Fits the nominal model of a problem if `fit` selects it, finds the smallest sets and proves
     /// them; `resume` is the file of a search that is continued.
     ///
     /// # Errors
@@ -92,8 +92,7 @@ impl Answer {
         self.model.verified
     }
 
-    /// Returns what the answer says, statement by statement: the verdict first, notes on the
-    /// recordings last.
+    /// Returns the findings of the answer: the verdict first, notes on the recordings last.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
         let notes = self.problem.recordings().notes.iter();

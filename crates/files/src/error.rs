@@ -13,13 +13,13 @@ pub enum Error {
         path: PathBuf,
         /// The operating system's reason.
         source: std::io::Error,
-        /// What to do.
+        /// The remedy.
         remedy: &'static str,
     },
     /// A file could not be written. No part of it remains, and an older file of its name is as it
     /// was.
     #[error(
-        "{}: cannot write: {source}; a file of this name, if any, is as it was; choose a place \
+        "{}: cannot write: {source}; an existing file was not changed; choose a place \
          with room and permission",
         path.display()
     )]
@@ -34,7 +34,7 @@ pub enum Error {
     Progress {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
     /// A file is where a folder is needed.

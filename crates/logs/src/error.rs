@@ -19,7 +19,7 @@ pub enum Error {
     Format {
         /// The file.
         path: PathBuf,
-        /// What it is, and what to do.
+        /// The problem and the remedy.
         problem: String,
     },
     /// A part of the file cannot be read.
@@ -36,7 +36,7 @@ pub enum Error {
     NoTopic {
         /// The file or folder.
         path: PathBuf,
-        /// The name asked for.
+        /// The requested name.
         topic: String,
         /// Topics of the log, with their types.
         available: Vec<String>,
@@ -116,7 +116,7 @@ pub enum Error {
         path: PathBuf,
         /// Line in it, from 1.
         line: u64,
-        /// What is wrong, and what to do.
+        /// The problem and the remedy.
         problem: String,
     },
     /// No run was found.

@@ -75,7 +75,7 @@ pub enum Error {
         /// The library's message.
         cause: String,
     },
-    /// What the page shows could not be computed.
+    /// The contents of the page could not be computed.
     #[error(transparent)]
     Conform(#[from] reachtube_conform::Error),
     /// The page could not be written.

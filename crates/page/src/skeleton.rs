@@ -70,7 +70,7 @@ pub(super) fn anchor(title: &str) -> String {
     title.to_lowercase().replace(' ', "-")
 }
 
-/// Returns two lists of points side by side, each with its title and class; nothing of an empty
+/// Returns two lists of points side by side, each with its title and class; no text for an empty
 /// list.
 pub(super) fn pair_of_lists(lists: [(&str, &str, &[String]); 2]) -> Markup {
     html! {

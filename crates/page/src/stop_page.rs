@@ -25,7 +25,7 @@ const COLOURS: [[u8; 3]; 3] = [[140, 149, 159], [18, 70, 200], [222, 120, 20]];
 /// The parts of speed and extension in the table.
 const SPEEDS: [f64; 3] = [0.33, 0.66, 1.0];
 
-/// What the page shows.
+/// The contents of the page.
 #[derive(Debug, Clone, Copy)]
 pub struct StopPage<'a> {
     /// The robot.
@@ -91,8 +91,8 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
         (section("Basis", &basis(page)))
     };
     let title = format!("{}: stopping times and distances", page.robot.name());
-    let subtitle = "Proved upper bounds, and measurements where there are any; the table is laid \
-                    out as ISO 10218-1, Annex B, asks";
+    let subtitle = "Proved upper bounds, and measurements, if any; the layout of the table \
+        follows ISO 10218-1, Annex B";
     out.write_all(document(&title, subtitle, &body, &Markup::default()).as_bytes())?;
     Ok(())
 }

@@ -26,14 +26,14 @@ const FRAMES: usize = 60;
 
 const SCRIPT: &str = include_str!("view.js");
 
-/// What the page shows.
+/// The contents of the page.
 #[derive(Debug, Clone, Copy)]
 pub struct VerifyPage<'a> {
     /// The verdicts about the motions.
     pub all: &'a [Verification],
     /// The links.
     pub body: &'a Body,
-    /// What they must stay clear of.
+    /// The obstacles that they must stay clear of.
     pub scene: &'a Scene,
     /// Why the verdicts say less of the robot than of the model.
     pub warnings: &'a [Finding],
@@ -58,7 +58,7 @@ struct View<'a> {
 #[derive(Serialize)]
 struct Frame {
     time: f64,
-    /// What contains each link over the step.
+    /// Capsules that contain the links over the step.
     swept: Vec<[f64; 7]>,
     /// The nominal motion, of a stop at its start.
     nominal: Vec<[f64; 7]>,

@@ -1,7 +1,7 @@
 reachtube_finding::codes! {
     /// What a finding about logs, and about a model made of them, is about.
     pub enum Code {
-        /// What a choice that was not applied would give.
+        /// The effect of a choice that was not applied.
         WouldHelp = "would-help",
         /// The recordings contradict the robot's description, or the dynamics of rigid bodies.
         Contradiction = "contradiction",

@@ -1,4 +1,4 @@
-//! What the recordings say about themselves and the robot, as findings.
+//! Findings about contradictions among the recordings and with the robot.
 
 use crate::code::Code;
 use reachtube_conform::next_motion::LeftOut;
@@ -46,7 +46,7 @@ pub(crate) fn not_enclosed(left_out: &LeftOut) -> Finding {
     let motion = &left_out.motion;
     let text = format!(
         "no allowance of U makes the sets of the other motions enclose {motion}, which was left \
-         out: they do not foretell it; record more motions, or hold it out to look at it"
+         out: they do not carry over to it; record more motions, or hold it out to look at it"
     );
     Finding { place: Some(motion.clone()), ..warning(reachtube_conform::Code::LeftOut, &text) }
 }

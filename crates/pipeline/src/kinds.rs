@@ -1,4 +1,4 @@
-//! What recordings are: poses at rest, motions of one joint at a time, or motions of several.
+//! Kinds of recordings: poses at rest, motions of one joint at a time, or motions of several.
 
 use reachtube_identify::prepare::RawLog;
 use reachtube_recordings::Run;
@@ -16,7 +16,7 @@ const DIFFERENCE_OF_REPEATS: f64 = 0.1;
 /// Number of samples that are compared.
 const COMPARED: usize = 400;
 
-/// What a recording is.
+/// The kind of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum MotionType {
     /// The robot rests.
@@ -51,8 +51,8 @@ impl MotionType {
     }
 }
 
-/// Returns the name of the motion of each recording, where the recording has none: recordings of
-/// the same motion have the name of the first.
+/// Returns the name of the motion of each recording, if the recording has none: recordings of the
+/// same motion have the name of the first.
 pub(crate) fn motions(logs: &[&RawLog]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (index, log) in logs.iter().enumerate() {

@@ -14,9 +14,10 @@ pub(crate) fn unknown_motors(robot: &Robot, torque: Torque) -> Option<Finding> {
     let names: Vec<&str> = unknown.map(|joint| joint.name.as_str()).collect();
     (torque == Torque::Link && !names.is_empty()).then(|| {
         let text = format!(
-            "the torques were measured behind the gears, which does not show the inertia of the \
-             motors, and the description has none for {}: the links of a wrist alone have almost \
-             no inertia, so that its sets are wide; give `armature` for these joints, kg m²",
+            "the torques were measured behind the gears, where the inertia of the motors has no \
+                effect, and the description has none for {}: the links of a wrist alone have \
+                almost no inertia, so that its sets are wide; give `armature` for these joints, \
+                kg m²",
             names.join(", ")
         );
         warning(Code::MotorsUnknown, &text)

@@ -134,7 +134,7 @@ pub(crate) fn unmeasured(robot: &Robot, logs: &[&RawLog]) -> Option<Finding> {
     let remedy = Remedy {
         setting: "lock".into(),
         value: String::new(),
-        effect: "holds joints at positions that are given and leaves them out.".into(),
+        effect: "holds joints at given positions and removes them from the robot.".into(),
     };
     let place = Some(names.join(", "));
     Some(Finding { place, remedy: Some(remedy), ..contradiction(&text) })
@@ -146,7 +146,7 @@ fn off(values: &[f64], others: &[f64], joint: usize) -> f64 {
 
 /// How one signal follows another.
 struct Correlation {
-    /// The correlation, from -1 to 1; 0 where a signal is constant.
+    /// The correlation, from -1 to 1; 0 if a signal is constant.
     value: f64,
     /// The factor of the one that is nearest to the other, both about their means.
     gain: f64,

@@ -19,7 +19,8 @@ use crate::would_help::{nothing_helps, would_help};
 /// Windows on which a fit is tried: it takes a thousand times as long as the sets alone.
 const FIT_WINDOWS: usize = 12;
 
-/// What is fitted in a trial, and the weight of its pull, whose choice would take most of the time.
+/// Group that a trial fits. The weight of its pull is fixed, because its choice would take most of
+/// the time.
 const FITTED: Group = Group::Inertia;
 const PULL: f64 = 0.01;
 

@@ -37,7 +37,7 @@ pub(crate) struct Nominal {
     pub is_identified: bool,
     /// Why.
     pub reason: String,
-    /// What contradicts the robot or rigid-body dynamics in the recordings.
+    /// Contradictions of the recordings to the robot or to rigid-body dynamics.
     pub findings: Vec<Finding>,
     /// Whether an identification found that columns are exchanged.
     pub is_swapped: bool,
@@ -51,7 +51,7 @@ pub(crate) struct Evidence<'a> {
     pub one_joint: Vec<LogEntry>,
     /// Exciting motions.
     pub motions: &'a [Recording],
-    /// What the torques are.
+    /// The kind of the torques.
     pub torque: Torque,
     /// How recordings are prepared.
     pub settings: &'a PrepareSettings,
@@ -246,7 +246,7 @@ impl Evidence<'_> {
         let answer = match trial.run(windows) {
             Ok(answer) => answer,
             Err(error) if trial.progress.is_cancelled() => return Err(error),
-            // A model that runs away explains nothing.
+            // A model that diverges explains nothing.
             Err(_) => return Ok(f64::INFINITY),
         };
         let errors = answer.found.input_error;

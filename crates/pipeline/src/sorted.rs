@@ -20,18 +20,18 @@ use crate::kinds::{MotionType, motions};
 use crate::steps::data_digest;
 use crate::windows::Origin;
 
-/// What says of recordings how warm the robot was.
-pub(crate) const WARMTH: &str = "an index runs.csv, whose column order says how many runs warmed \
-    the robot up before, or the columns temp1 to tempn";
+/// Data from which the warmth of the robot is known.
+pub(crate) const WARMTH: &str = "an index runs.csv, whose column order counts the runs since the \
+    cold start, or the columns temp1 to tempn";
 
 /// Recordings by what they are.
 pub(crate) struct Sorted {
     pub rest: Vec<LogEntry>,
     pub one_joint: Vec<LogEntry>,
     pub motions: Vec<Recording>,
-    /// What a user should know about the reading of the recordings.
+    /// Notes about the reading of the recordings for the user.
     pub notes: Vec<String>,
-    /// What contradicts other recordings, and was mended.
+    /// Contradictions to other recordings that were corrected.
     pub findings: Vec<Finding>,
     /// Whether a recording is marked as simulated.
     pub simulated: bool,
@@ -118,8 +118,8 @@ fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
     (kept, finding)
 }
 
-/// Reads recordings. Each has the order of its index, and the motion, or else the suite, where the
-/// log names no motion itself. Files of one name have the names of their folders too.
+/// Reads recordings. Each has the order of its index, and the motion, or else the suite, if the log
+/// names no motion itself. Files of one name have the names of their folders too.
 ///
 /// # Errors
 ///
@@ -184,8 +184,8 @@ fn name_apart(raw: &mut [RawLog]) {
     }
 }
 
-/// Returns the file of a recording that does not say how warm the robot was: by the temperatures
-/// of its joints, or else by the order of the runs.
+/// Returns the file of a recording without the warmth of the robot: by the temperatures of its
+/// joints, or else by the order of the runs.
 pub(crate) fn unknown_warmth<'a>(logs: &[&'a RawLog], by_temperature: bool) -> Option<&'a Path> {
     let is_known = |log: &RawLog| match by_temperature {
         true => !log.run.temperatures.is_empty(),
@@ -205,8 +205,8 @@ pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, Origin> {
     logs.map(|(log, motion)| (log.name.clone(), origin(log, motion))).collect()
 }
 
-/// Returns what indices say of each file. An index that is wrong is an error, unless it lies above
-/// the `given` folders and the recordings' own.
+/// Returns the entries of each file in the indices. An index that is wrong is an error, unless it
+/// lies above the `given` folders and the recordings' own.
 fn indexed(raw: &[RawLog], given: &[PathBuf]) -> Result<BTreeMap<PathBuf, RunEntry>> {
     let folders: BTreeSet<&Path> = raw.iter().filter_map(|log| index_folder(&log.file)).collect();
     let is_beside = |folder: &Path| {

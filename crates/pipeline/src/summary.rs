@@ -145,7 +145,6 @@ impl Built {
     }
 }
 
-/// Returns a ratio in percent.
 fn percent(ratio: f64) -> String {
     if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "-".into() }
 }

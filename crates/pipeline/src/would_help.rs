@@ -1,4 +1,4 @@
-//! What choices that were not applied would give.
+//! Effects of choices that were not applied.
 
 use std::borrow::Cow;
 
@@ -7,8 +7,8 @@ use reachtube_scalar::number::counted;
 
 use crate::code::Code;
 
-/// What a choice would give: the ratio of half the widest set, the set of `joint`, to the
-/// joint's motion, without the choice and with it, as tried on some windows.
+/// Effect of a choice: the ratio of half the widest set, the set of `joint`, to the joint's motion,
+/// without the choice and with it, as tried on some windows.
 pub(crate) fn would_help(
     setting: &str,
     value: &str,

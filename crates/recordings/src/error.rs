@@ -27,15 +27,15 @@ pub enum Error {
     UnknownSuite {
         /// Name of the source's index.
         index: PathBuf,
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// Names of the suites that exist.
         available: Vec<String>,
     },
-    /// A suite was asked for more than once.
+    /// A suite was requested more than once.
     #[error("a suite is named twice in {}; name each suite once", names.join(","))]
     RepeatedSuite {
-        /// The names asked for.
+        /// The requested names.
         names: Vec<String>,
     },
 }

@@ -83,7 +83,7 @@ pub enum RobotError {
         setting: &'static str,
         /// Its value, with its unit.
         value: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: &'static str,
         /// The values that are allowed.
         range: String,

@@ -31,7 +31,7 @@ pub enum Error {
         origin: String,
         /// The line, from 1.
         line: usize,
-        /// What the value belongs to, as "capsule 2: ".
+        /// The object of the value, as "capsule 2: ".
         place: String,
         /// The value and the limit that it violates.
         problem: String,
@@ -48,7 +48,7 @@ pub enum Error {
         link: String,
         /// The file of the mesh, as the URDF names it.
         mesh: String,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
         /// The remedy.
         remedy: String,
@@ -72,7 +72,7 @@ pub enum Error {
         urdf: String,
         /// The robot of the model.
         robot: String,
-        /// What differs.
+        /// The difference.
         problem: String,
     },
     /// Nothing is compared with anything.
@@ -83,7 +83,7 @@ pub enum Error {
     NoPair,
     /// The recordings of a suite have other sample times.
     #[error(
-        "suite {suite}: its recordings have different sample times, and are one motion; give \
+        "suite {suite}: its recordings have different sample times, but are one motion; give \
          recordings of another sample time a suite of their own in runs.csv"
     )]
     OtherTimes {
@@ -99,7 +99,7 @@ pub enum Error {
         /// The suite, and the run.
         case: String,
     },
-    /// Stops of category 1 are asked for, and no deceleration is given.
+    /// Stops of category 1 are requested, and no deceleration is given.
     #[error(
         "{origin}: stops of category 1 need the greatest deceleration of each joint; add the line \
          `deceleration = [4, 4, 4, 6, 6, 6]`, one number for each joint in rad/s²"

@@ -22,7 +22,7 @@ const STEPS: usize = 120;
 const VIEWS: [(&str, [usize; 2]); 2] =
     [("from the side: x to the right, z up", [0, 2]), ("from above: x to the right, y up", [0, 1])];
 
-/// What the colours mean.
+/// Meaning of the colours.
 const KEY: &str = "grey: all motions of the model; orange: the worst stop; blue: the nominal \
                    motion; red: the closest one found; brown: obstacles";
 

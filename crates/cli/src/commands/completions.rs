@@ -66,7 +66,7 @@ fn write_all(folder: &Path, command: Command) -> Result<()> {
     Ok(())
 }
 
-/// Returns the script of a shell, with the comment by which a later command knows that it may
+/// Returns the script of a shell, with the comment by which a later command recognises that it may
 /// replace it. The comment is the second line, because zsh reads the first.
 fn script(shell: Shell, mut command: Command) -> String {
     let mut script = Vec::new();

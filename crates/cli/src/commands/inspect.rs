@@ -142,7 +142,7 @@ const LEGEND: &str = "
 start, end: spread of the first and of the last positions over the runs [as q]
 drift: correlation of the last position with the order of the runs; near +1 or -1 where the robot
   changes from run to run, as it does while it warms up
-temp: lowest and highest recorded temperature, where there is one
+temp: lowest and highest recorded temperature, if any
 sticks: share of the samples slower than 0.01 rad/s or m/s
 q - int qd: largest difference between q and the integral of qd [as q]
 ";

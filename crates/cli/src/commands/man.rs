@@ -63,13 +63,13 @@ fn built(command: Command) -> Command {
     command
 }
 
-/// Returns a command and the commands below it.
 fn all(command: Command) -> Vec<Command> {
     let below: Vec<Command> = command.get_subcommands().cloned().flat_map(all).collect();
     std::iter::once(command).chain(below).collect()
 }
 
-/// Returns a manual page, with the comment by which a later command knows that it may replace it.
+/// Returns a manual page, with the comment by which a later command recognises that it may replace
+/// it.
 fn page(command: Command) -> std::io::Result<Vec<u8>> {
     let mut page = format!(".\\\" {}\n", reachtube_files::MARK).into_bytes();
     Man::new(command).render(&mut page)?;

@@ -80,7 +80,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     if args.compensate {
-        // A robot without masses has no gravity that could be taken off.
+        // A robot without masses has no gravity that could be subtracted.
         robot.check_physical()?;
     }
     let settings = settings(args);

@@ -46,10 +46,16 @@ fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
     }
     let is_known = nominal_starts.is_empty() || nominal_starts.contains_key(name);
     if nominal == NominalStart::Mean && !is_known {
+        let start = match count {
+            1 => "the first state of its recording".to_owned(),
+            _ => format!(
+                "the mean of the first states of its {count} recordings; the verdict on one of \
+                 them depends on the others"
+            ),
+        };
         notes.push(format!(
             "suite {name}: the model has no nominal initial state for it, so its nominal motion \
-             starts at the mean of the first states of its {count} recordings; the verdict on one \
-             of them depends on the others"
+             starts at {start}"
         ));
     }
     notes

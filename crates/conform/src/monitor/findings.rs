@@ -1,4 +1,4 @@
-//! What a monitor found, as findings.
+//! The findings of a monitor.
 
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::counted;

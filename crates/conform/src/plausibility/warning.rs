@@ -8,7 +8,7 @@ use reachtube_finding::Remedy;
 pub struct Warning {
     /// The kind of remark.
     pub kind: WarningKind,
-    /// The joints that it is about, from 1; none where it is about all.
+    /// The joints that it is about, from 1; none if it is about all.
     pub joints: Vec<usize>,
     /// The remark in words, without the remedy. Files of earlier versions name settings in it.
     pub text: String,
@@ -66,8 +66,8 @@ impl WarningKind {
         Self::FallingFriction,
     ];
 
-    /// Returns whether the warning asks for a cause. X0 takes over from U where that is cheaper,
-    /// whatever the recordings are, and friction is a cause of its own.
+    /// Returns whether the warning needs a cause. X0 covers what U covers otherwise if that is
+    /// cheaper, whatever the recordings are, and friction is a cause of its own.
     pub(crate) fn has_cause(self) -> bool {
         !matches!(self, Self::InitialSetStarts | Self::FrictionRange | Self::FallingFriction)
     }

@@ -1,4 +1,4 @@
-//! Friction at speeds that it was not fitted on, and nominal motions that run away by it.
+//! Friction at speeds that it was not fitted on, and nominal motions that diverge by it.
 
 use crate::common::{conform_all, grid};
 use reachtube_conform::Code;

@@ -317,7 +317,7 @@ impl Progress for Interrupting {
     }
 }
 
-/// An interrupted search goes on where it was, and comes to the same sets bit by bit.
+/// An interrupted search continues where it was, and comes to the same sets bit by bit.
 #[test]
 fn a_search_goes_on_where_it_was_interrupted() {
     let folder = tempfile::tempdir().unwrap();
@@ -362,8 +362,7 @@ fn a_model_that_runs_away_is_refused_with_the_time() {
     );
 }
 
-/// Sets under which the model may run away have no reachable set to the end, and that is the
-/// answer.
+/// Sets under which the model may diverge have no reachable set to the end, and that is the answer.
 #[test]
 fn a_reachable_set_that_is_lost_is_an_answer() {
     let folder = tempfile::tempdir().unwrap();

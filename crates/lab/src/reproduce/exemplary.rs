@@ -27,8 +27,8 @@ pub(crate) struct Exemplary {
 }
 
 impl Exemplary {
-    /// Takes a suite of the recordings for which `found` holds the sets; where none is named, the
-    /// one whose runs end furthest apart.
+    /// Takes a suite of the recordings for which `found` holds the sets; if none is named, the one
+    /// whose runs end furthest apart.
     ///
     /// # Errors
     ///

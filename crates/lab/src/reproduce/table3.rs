@@ -54,14 +54,14 @@ pub(crate) struct Table3Row {
     pub name: String,
     /// Our estimate, by least squares, in SI units.
     pub estimate: f64,
-    /// Its standard error; none where the recordings do not determine the coefficient, so that it
-    /// is 0 or another quadrant's.
+    /// Its standard error; none if the recordings do not determine the coefficient, so that it is 0
+    /// or another quadrant's.
     pub standard_error: Option<f64>,
     /// The value of the arm that moved.
     pub truth: f64,
     /// The estimate minus the truth, in standard errors.
     pub deviation: Option<f64>,
-    /// What makes the estimate differ from the truth by more than its standard error tells.
+    /// Cause of differences between estimate and truth beyond the standard error.
     pub effects: Vec<Effect>,
     /// The value of the paper, where it prints one. The arm that moved is another one.
     pub paper: Option<f64>,

@@ -62,7 +62,7 @@ pub enum ExportError {
         tool: Tool,
         /// The suite or run.
         case: String,
-        /// What takes such samples.
+        /// The tool that takes such samples.
         remedy: &'static str,
     },
     /// A suite has no time between two samples.

@@ -1,4 +1,4 @@
-//! The table of stopping times and distances that ISO 10218-1 asks for in Annex B.
+//! The table of stopping times and distances that ISO 10218-1 requires in Annex B.
 
 use crate::code::Code;
 use rayon::prelude::*;
@@ -20,7 +20,7 @@ const PARTS: [f64; 3] = [0.33, 0.66, 1.0];
 /// Number of joints in the table.
 const JOINTS: usize = 3;
 
-/// How long the path of a stop goes on, s.
+/// Duration of the path of a stop, s.
 const PATH: f64 = 100.0;
 
 /// Stopping times and distances of the three joints with the greatest displacement: category 0 at
@@ -29,7 +29,7 @@ const PATH: f64 = 100.0;
 pub struct AnnexB {
     /// The rows.
     pub rows: Vec<AnnexRow>,
-    /// What is missing in the table, and why.
+    /// Findings about missing rows of the table, with the reason.
     #[serde(skip)]
     pub notes: Vec<Finding>,
 }

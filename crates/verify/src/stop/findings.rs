@@ -1,4 +1,4 @@
-//! What is known about the stops of a robot, statement by statement.
+//! Findings about the stops of a robot.
 
 use crate::code::Code;
 use reachtube_finding::{Finding, Severity};

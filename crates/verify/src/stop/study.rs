@@ -1,4 +1,4 @@
-//! All that is asked about the stops of a robot.
+//! Questions about the stops of a robot.
 
 use reachtube_conform::{Problem, UncertaintySets};
 use reachtube_finding::Finding;
@@ -15,7 +15,7 @@ use crate::stop::delay_span::DelaySpan;
 use crate::stop::findings::findings;
 use crate::stop::recorded::{RecordedStop, outside, recorded_stops};
 
-/// What is asked about the stops of a robot.
+/// A question about the stops of a robot.
 #[derive(Debug)]
 pub struct StopQuestion<'a> {
     /// The brakes.
@@ -30,7 +30,7 @@ pub struct StopQuestion<'a> {
     pub recorded: Option<&'a dyn RunSource>,
 }
 
-/// What is known about the stops of a robot.
+/// The answer to a question about the stops of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StopStudy {
     /// The stop category, 0 or 1, along the motions and of the recorded stops.
@@ -41,7 +41,7 @@ pub struct StopStudy {
     pub annex_b: Option<AnnexB>,
     /// Recorded stops beside the proved ones.
     pub recorded: Vec<RecordedStop>,
-    /// What follows, statement by statement: the verdict first.
+    /// The findings, in the order in which they are read: the verdict first.
     pub findings: Vec<Finding>,
 }
 
@@ -50,7 +50,7 @@ pub struct StopStudy {
 ///
 /// # Guarantee
 ///
-/// Outer, as [`Category::stop`]. Ways and times are infinite where no standstill is proved.
+/// Outer, as [`Category::stop`]. Ways and times are infinite if no standstill is proved.
 ///
 /// # Errors
 ///

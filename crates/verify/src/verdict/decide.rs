@@ -1,4 +1,4 @@
-//! What would decide a question that is open.
+//! Changes that decide an open question.
 
 use reachtube_conform::{Error, SuiteReach, Tube, UncertaintySets, reach};
 use reachtube_reach::Hyperrectangle;
@@ -19,7 +19,7 @@ const PARTS: [u32; 2] = [64, 512];
 /// Halvings of the interval in which the factor of the sets lies, for motions and for stops.
 const HALVINGS: [u32; 2] = [6, 4];
 
-/// What would decide a question that is open, found by trying.
+/// Changes that decide an open question, found by trial.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NextStep {
@@ -112,7 +112,7 @@ fn narrowed(rule: &StopRule, factor: f64) -> StopRule {
     StopRule { category, ..rule.clone() }
 }
 
-/// Returns whether all distances are above the clearance that is asked for.
+/// Returns whether all distances are above the clearance that is requested.
 pub(super) fn clears(all: &[Clearance], scene: &Scene) -> bool {
     all.iter().all(|pair| pair.distance > scene.clearance)
 }

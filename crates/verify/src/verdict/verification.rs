@@ -45,11 +45,11 @@ pub struct Verification {
     pub margins: Vec<Margin>,
     /// The simulated motion that comes closest, unless the answer is safe.
     pub closest: Option<Witness>,
-    /// What would decide, if the answer is undecided.
+    /// The changes that decide, if the answer is undecided.
     pub advice: Option<NextStep>,
     /// The stops from the samples of the motion, if the scenario has any.
     pub stops: Option<MotionStops>,
-    /// Where the reachable set ends early, if it does.
+    /// The early end of the reachable set, if any.
     pub lost: Option<Lost>,
     /// The reachable set.
     #[serde(skip)]

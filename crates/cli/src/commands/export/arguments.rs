@@ -1,4 +1,4 @@
-//! What `reachtube export` takes, and how it writes files.
+//! Options of `reachtube export`, and the way it writes files.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ const NO_MODEL: &str = "only mjcf and urdf take --robot; name a model that `mode
                         wrote with --model";
 
 const HELP: &str = "\
-Tools, what they can mean, and what they cannot:
+Tools, and what each supports:
   cora        every model; the recorded input at equally spaced samples, U changing at any time
   flowstar    affine models as a model file, others as a C++ program that steps through samples
   spaceex     affine models; a polynomial one as a carrier for programs that read the format

@@ -88,7 +88,7 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
     write_all(&paths, written.iter().flat_map(|case| &case.files))?;
     if written.iter().any(|case| case.may_be_smaller) {
         output::warn(&format!(
-            "{tool} knows fewer disturbances than the model: its set may be smaller than the \
+            "{tool} supports fewer disturbances than the model: its set may be smaller than the \
              model's and proves nothing about it"
         ));
     }

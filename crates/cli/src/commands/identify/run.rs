@@ -35,7 +35,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Returns the files that the arguments ask for.
+/// Returns the files that the arguments select.
 fn outputs(args: &Arguments) -> Vec<PathBuf> {
     let page = args.report.as_ref().map(|folder| page_in(folder));
     let companion = args.urdf.as_ref().map(|path| path.with_extension("toml"));
@@ -46,7 +46,7 @@ fn page_in(folder: &Path) -> PathBuf {
     folder.join("identify.html")
 }
 
-/// Returns a TOML file with the mark by which a later command knows that it may replace it.
+/// Returns a TOML file with the mark by which a later command recognises that it may replace it.
 fn marked(toml: &str) -> String {
     format!("# {MARK} identify.\n{toml}")
 }
@@ -72,7 +72,7 @@ fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
     Ok(())
 }
 
-/// Writes the robot file, the report page and the URDF that the arguments ask for.
+/// Writes the robot file, the report page and the URDF that the arguments select.
 fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
     if let Some(folder) = &args.report {
         let mut page = Vec::new();

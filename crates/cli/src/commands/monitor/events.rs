@@ -19,7 +19,7 @@ pub(super) struct Events {
     kinds: Vec<JointKind>,
     /// The first event.
     first: Option<Finding>,
-    /// How probable an alarm is in one more healthy recording at most.
+    /// Upper bound of the probability of an alarm in one more healthy recording.
     alarm_bound: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What a check says beside its verdict.
+//! Findings of a check besides its verdict.
 
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::{at_least, counted};

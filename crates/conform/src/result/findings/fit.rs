@@ -1,4 +1,4 @@
-//! What a fit of the nominal model changed.
+//! Findings about a fit of the nominal model.
 
 use reachtube_scalar::number::{counted, four_decimals};
 
@@ -10,7 +10,7 @@ use reachtube_finding::{Finding, Severity};
 /// A parameter beyond this factor, or below 1 over it, no longer is what its name says.
 const MOST_FACTOR: f64 = 1.5;
 
-/// What the fit is worth, or why it was not taken.
+/// The gain of the fit, or the reason for its rejection.
 pub(crate) fn fitted(record: &FitRecord, is_linear: bool) -> Finding {
     if !record.taken {
         return not_taken(record);

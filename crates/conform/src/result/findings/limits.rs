@@ -1,4 +1,4 @@
-//! What an answer does not say: how far a proof reaches, and what must not be concluded.
+//! Limits of an answer: how far a proof reaches, and what must not be concluded.
 
 use crate::claim::verdict::Verdict;
 use crate::data::notion::Notion;

@@ -1,4 +1,4 @@
-//! What decides the sets, and motions near the recordings.
+//! Findings about the recordings that decide the sets.
 
 use crate::model::file::{MOST_TIGHT, Model};
 use crate::result::code::Code;

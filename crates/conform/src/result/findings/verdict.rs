@@ -1,4 +1,4 @@
-//! What was proved, what speaks against it, and what the sets cost.
+//! Findings about the proof, its counterexamples, and the cost of the sets.
 
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::{counted, four_decimals, plural};
@@ -193,7 +193,7 @@ pub(crate) fn unstable(case: &str, time: f64) -> Finding {
     Finding::new(Severity::Warning, Code::Unstable, text).at(case).with("time", time)
 }
 
-/// What the sets cost, and how far that is from the optimum, where it is known.
+/// The cost of the sets, and its distance from the optimum if it is known.
 pub(crate) fn cost(model: &Model) -> Finding {
     let Some(cost) = model.cost else {
         let text = "no cost: a reachable set could not be computed to the end";
