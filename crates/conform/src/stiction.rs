@@ -5,13 +5,11 @@
 //! limit of forward motion. Another motion under the same motor torque may stick where the recorded
 //! one moved, so that U must cover the difference there.
 
-use reachtube_recordings::Torque;
-use reachtube_robot::friction::{Friction, Viscous};
-use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::Interval;
 use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
+use crate::data::setup::DryFriction;
 use crate::reach::SuiteReach;
 use crate::sets::UncertaintySets;
 
@@ -62,11 +60,9 @@ pub fn stiction(
     allowance: &[f64],
     reached: &[SuiteReach],
 ) -> Vec<Stiction> {
-    if problem.settings().torque == Torque::Link {
-        return Vec::new();
-    }
+    let Some(friction) = problem.setup().drive.dry_friction() else { return Vec::new() };
     let allowance = problem.settings().stiction.then_some(allowance);
-    let mut search = Search::new(problem.robot(), sets, allowance);
+    let mut search = Search::new(friction, sets, allowance);
     for reach in reached {
         for k in 0..reach.tube.len() {
             search.step(reach, k);
@@ -77,24 +73,24 @@ pub fn stiction(
 
 /// Dry friction over boxes of states.
 struct Search<'a> {
-    robot: &'a Robot,
-    dry: Vec<Friction>,
+    friction: Box<dyn DryFriction + 'a>,
     noise: Vec<Interval>,
     room: Vec<f64>,
-    ws: Workspace<Interval>,
     states: Vec<Interval>,
-    load: Vec<Interval>,
     found: Vec<Option<Stiction>>,
 }
 
 impl<'a> Search<'a> {
-    fn new(robot: &'a Robot, sets: &UncertaintySets, allowance: Option<&[f64]>) -> Self {
-        let n = robot.joint_count();
-        let dry = |friction: Friction| Friction { viscous: Viscous::default(), ..friction };
+    fn new(
+        friction: Box<dyn DryFriction + 'a>,
+        sets: &UncertaintySets,
+        allowance: Option<&[f64]>,
+    ) -> Self {
+        let (states, inputs) = (sets.initial_set.dimension(), sets.input_set.dimension());
         let room = |j: usize| {
             let [centre, radius] = [sets.input_set.centre[j].abs(), sets.input_set.radius[j]];
             match allowance {
-                Some(allowance) => allowance.get(2 * n + j).copied().unwrap_or(0.0),
+                Some(allowance) => allowance.get(states + j).copied().unwrap_or(0.0),
                 None => (Interval::point(radius) - Interval::point(centre)).lo().max(0.0),
             }
         };
@@ -103,14 +99,11 @@ impl<'a> Search<'a> {
             Interval::point(-radius).hull(Interval::point(radius))
         };
         Self {
-            robot,
-            dry: robot.joints().iter().map(|joint| dry(joint.friction)).collect(),
-            noise: (0..2 * n).map(noise).collect(),
-            room: (0..n).map(room).collect(),
-            ws: Workspace::new(robot),
-            states: vec![Interval::ZERO; 2 * n],
-            load: vec![Interval::ZERO; n],
-            found: vec![None; n],
+            friction,
+            noise: (0..states).map(noise).collect(),
+            room: (0..inputs).map(room).collect(),
+            states: vec![Interval::ZERO; states],
+            found: vec![None; inputs],
         }
     }
 
@@ -121,25 +114,17 @@ impl<'a> Search<'a> {
             let reached = reach.tube.bounds(k)[i] + self.noise[i];
             *state = reached.hull(Interval::point(nominal[i]));
         }
-        let (q, qd) = self.states.split_at(self.load.len());
-        let (sin, cos) = self.robot.sin_cos(q);
-        self.robot.gravity(&sin, &cos, &mut self.ws, &mut self.load);
-        for (j, velocity) in qd.iter().enumerate() {
-            let range = self.dry[j].range_near_zero(self.load[j], *velocity);
-            let torque = range.width().min(f64::MAX);
-            if torque == 0.0 {
-                continue;
-            }
-            let steps = self.found[j].as_ref().map_or(0, |known| known.steps)
-                + usize::from(velocity.contains_zero());
-            match &mut self.found[j] {
+        let Self { friction, room, states, found, .. } = self;
+        friction.spread(states, &mut |j, torque, may_rest| {
+            let steps = found[j].as_ref().map_or(0, |known| known.steps) + usize::from(may_rest);
+            match &mut found[j] {
                 Some(known) if known.torque >= torque => known.steps = steps,
                 found => {
-                    let (room, time) = (self.room[j], reach.times[k]);
+                    let (room, time) = (room[j], reach.times[k]);
                     let case = reach.name();
                     *found = Some(Stiction { joint: j + 1, steps, torque, room, case, time });
                 }
             }
-        }
+        });
     }
 }

@@ -8,6 +8,7 @@ use reachtube_robot::Robot;
 
 use crate::arm::correction::InputCorrection;
 use crate::data::condition::Condition;
+use crate::data::part::Part;
 use crate::data::settings::{Equations, Settings};
 
 /// An arm that drives a model of its motion by the torques of recordings.
@@ -22,6 +23,8 @@ pub(crate) struct Arm {
     pub expansion_point: ExpansionPoint,
     /// Whose equations of motion the nominal motions satisfy.
     pub equations: Equations,
+    /// The joints, with the position and the velocity of each.
+    pub parts: Vec<Part>,
 }
 
 impl Arm {
@@ -31,7 +34,9 @@ impl Arm {
         correction: Option<InputCorrection>,
         settings: &Settings,
     ) -> Self {
+        let n = robot.joint_count();
         Self {
+            parts: (0..n).map(|joint| Part { states: vec![joint, n + joint] }).collect(),
             robot: Arc::new(robot),
             correction,
             torque: settings.torque,

@@ -12,6 +12,7 @@ use reachtube_robot::friction::WarmingBy;
 use crate::arm::arm::Arm;
 use crate::arm::correction::InputCorrection;
 use crate::arm::corrector::Corrector;
+use crate::arm::dry_friction::JointFriction;
 use crate::arm::input::input;
 use crate::arm::input_error;
 use crate::arm::loads::LoadsNear;
@@ -21,8 +22,9 @@ use crate::arm::system::system;
 use crate::data::case::Case;
 use crate::data::condition::Condition;
 use crate::data::input::RunInput;
+use crate::data::part::Part;
 use crate::data::settings::{Equations, Method};
-use crate::data::setup::{Asked, Compensation, Drive, Near, Parameters, Setup};
+use crate::data::setup::{Asked, Compensation, Drive, DryFriction, Near, Parameters, Setup};
 use crate::error::{Error, Result};
 use crate::fit::group::Group;
 
@@ -47,6 +49,16 @@ impl Drive for Arm {
             Torque::Motor => warm,
             Torque::Link => warm + &json(self.robot.description()),
         }
+    }
+
+    fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// Link torques have no friction of the joints.
+    fn dry_friction(&self) -> Option<Box<dyn DryFriction + '_>> {
+        let friction = || Box::new(JointFriction::new(&self.robot)) as Box<dyn DryFriction>;
+        (self.torque != Torque::Link).then(friction)
     }
 
     fn input_differs_by_run(&self) -> bool {
@@ -102,7 +114,7 @@ impl Drive for Arm {
     }
 
     fn identity(&self) -> String {
-        let Self { robot, correction, torque, abstraction, expansion_point, equations } = self;
+        let Self { robot, correction, torque, abstraction, expansion_point, equations, .. } = self;
         let model = (abstraction, expansion_point, equations);
         json(&(robot.description(), correction, torque, model))
     }

@@ -5,6 +5,7 @@ pub(crate) mod arm;
 pub(crate) mod correction;
 mod corrector;
 mod drive;
+mod dry_friction;
 pub(crate) mod input;
 mod input_error;
 mod loads;

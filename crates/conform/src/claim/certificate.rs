@@ -107,8 +107,8 @@ fn lines(
     let (settings, slice) = (problem.settings(), plant.slice(sets, at.place()));
     let points = CentredPoints::new(at, &slice);
     let mut lines = Vec::new();
-    let rows = settings.states.rows(2 * problem.joints());
-    for states in &settings.notion.projections(rows, problem.joints()) {
+    let rows = settings.states.rows(problem.shape().states);
+    for states in &settings.notion.projections(rows, problem.parts()) {
         let (proved, _) = SampleSet::new(&slice, states).prove(&points, |point, factors| {
             let Factors { held, limit, set, work } = factors;
             let (suite, run) = at.owners[point];

@@ -1,7 +1,6 @@
 //! The phase planes of the joints, for figures.
 
 use rayon::prelude::*;
-use reachtube_recordings::State;
 
 use crate::claim::sample_points::{SamplePoints, points};
 use crate::data::notion::Notion;
@@ -47,17 +46,22 @@ impl PhasePlane {
             return Ok(Vec::new());
         }
         let (plant, points) = (Linear::with_slices(problem)?, points(problem)?);
-        let planes = Notion::PhasePlane.projections(2 * problem.joints(), problem.joints());
-        let plane = |states: &Vec<usize>| {
+        let planes = Notion::PhasePlane.projections(problem.shape().states, problem.parts());
+        let plane = |(part, states): (usize, &Vec<usize>)| {
             let ratio = |at: &SamplePoints| furthest(&plant.slice(sets, at.place()), at, states);
             let ratios: Vec<f64> = points.par_iter().map(ratio).collect();
             let at = (0..ratios.len()).max_by(|&i, &k| ratios[i].total_cmp(&ratios[k]))?;
-            Some(Self::new(&plant, &points[at], sets, states))
+            Some(Self::new(&plant, &points[at], sets, (part, states)))
         };
-        Ok(planes.iter().filter_map(plane).collect())
+        Ok(planes.iter().enumerate().filter_map(plane).collect())
     }
 
-    fn new(plant: &Linear, at: &SamplePoints, sets: &UncertaintySets, states: &[usize]) -> Self {
+    fn new(
+        plant: &Linear,
+        at: &SamplePoints,
+        sets: &UncertaintySets,
+        (joint, states): (usize, &[usize]),
+    ) -> Self {
         let slice = plant.slice(sets, at.place());
         let (centre, _) = slice.centre();
         let [q, qd] = [states[0], states[1]];
@@ -65,7 +69,7 @@ impl PhasePlane {
         let hull = slice.hull();
         let bounds = |i: usize| [centre[i] - hull[i], centre[i] + hull[i]];
         Self {
-            joint: State::from_index(q, centre.len() / 2).joint,
+            joint,
             time: plant.grids[at.strand].propagation.grid().times()[at.sample],
             polygon: rows.zonotope(vec![centre[q], centre[qd]]).polygon(0, 1),
             hull: [bounds(q), bounds(qd)],

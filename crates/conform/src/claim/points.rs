@@ -44,9 +44,9 @@ impl<'a> Points<'a> {
     ///
     /// As [`points`].
     pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
-        let (settings, joints) = (problem.settings(), problem.joints());
-        let rows = settings.states.rows(2 * joints);
-        let projections = settings.notion.projections(rows, joints);
+        let (settings, parts) = (problem.settings(), problem.parts());
+        let rows = settings.states.rows(problem.shape().states);
+        let projections = settings.notion.projections(rows, parts);
         let (samples, lists) = (points(problem)?, Mutex::default());
         Ok(Self { problem, samples, projections, tolerance: tolerance(settings), lists })
     }

@@ -10,6 +10,7 @@ pub(crate) mod marks;
 mod notes;
 pub(crate) mod notion;
 pub(crate) mod origin;
+pub(crate) mod part;
 pub(crate) mod problem;
 pub(crate) mod recordings;
 pub(crate) mod runaway;

@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::part::Part;
+
 /// In which directions recordings must lie in the reachable set (docs/method.md, correction C).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -31,12 +33,13 @@ impl Notion {
     }
 
     /// Returns the states of each projection in which recorded points must lie in the reachable
-    /// set, for recordings of `rows` states: positions, or also velocities.
-    pub(crate) fn projections(self, rows: usize, joints: usize) -> Vec<Vec<usize>> {
+    /// set, for recordings of the first `rows` states of a system with these parts.
+    pub(crate) fn projections(self, rows: usize, parts: &[Part]) -> Vec<Vec<usize>> {
+        let of_part =
+            |part: &Part| part.states.iter().copied().filter(|state| *state < rows).collect();
         match self {
             Self::Exact => vec![(0..rows).collect()],
-            _ if rows == joints => (0..joints).map(|i| vec![i]).collect(),
-            _ => (0..joints).map(|i| vec![i, joints + i]).collect(),
+            Self::Hull | Self::PhasePlane => parts.iter().map(of_part).collect(),
         }
     }
 

@@ -9,6 +9,7 @@ use crate::data::case::Case;
 use crate::data::kept::KeptRuns;
 use crate::data::notes::recording_notes;
 use crate::data::origin::Origin;
+use crate::data::part::Part;
 use crate::data::recordings::Recordings;
 use crate::data::runaway::Runaway;
 use crate::data::sensor_noise::SensorNoise;
@@ -190,6 +191,20 @@ impl Problem {
     /// Returns the number of states and inputs of the model: 2n and n.
     pub(crate) fn shape(&self) -> Shape {
         Shape { states: self.dynamics().states(), inputs: self.dynamics().inputs() }
+    }
+
+    /// Returns the parts of the system, whose states are looked at together.
+    pub(crate) fn parts(&self) -> &[Part] {
+        self.setup.drive.parts()
+    }
+
+    /// Returns the states of each kind, such as all positions: the first states of all parts, then
+    /// their second ones.
+    pub(crate) fn kinds(&self) -> Vec<Vec<usize>> {
+        let most = self.parts().iter().map(|part| part.states.len()).max().unwrap_or(0);
+        let of =
+            |at: usize| self.parts().iter().filter_map(move |part| part.states.get(at)).copied();
+        (0..most).map(|at| of(at).collect()).collect()
     }
 
     /// Returns the source's entry of run `index`.

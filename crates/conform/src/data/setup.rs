@@ -6,11 +6,13 @@ use std::sync::Arc;
 
 use reachtube_reach::System;
 use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run};
+use reachtube_scalar::Interval;
 
 use crate::data::case::Case;
 use crate::data::condition::Condition;
 use crate::data::input::RunInput;
 use crate::data::notion::Notion;
+use crate::data::part::Part;
 use crate::data::settings::Settings;
 use crate::error::Result;
 use crate::fit::group::Group;
@@ -56,6 +58,13 @@ pub(crate) trait Drive: Debug + Send + Sync {
     /// every recording the same input. Inputs that were computed under another key are computed
     /// again.
     fn input_key(&self, at: Option<&Condition>) -> String;
+
+    /// Returns the parts of the system, whose states are looked at together.
+    fn parts(&self) -> &[Part];
+
+    /// Returns what finds how far the dry part of the inputs may differ between states; `None` where
+    /// the inputs have no such part.
+    fn dry_friction(&self) -> Option<Box<dyn DryFriction + '_>>;
 
     /// Returns whether the input depends on the condition of the run.
     fn input_differs_by_run(&self) -> bool;
@@ -125,6 +134,17 @@ pub(crate) trait Drive: Debug + Send + Sync {
 pub(crate) trait Compensation: Debug + Send + Sync {
     /// Takes it off the input `u` (m) of sample `k`, where the nominal state is `x` (N).
     fn apply(&mut self, k: usize, x: &[f64], u: &mut [f64]);
+}
+
+/// How far the dry friction of inputs may differ between the states in a box.
+pub(crate) trait DryFriction {
+    /// Hands to `visit`, for each input whose friction may differ between two states of a box (N):
+    /// its index, the largest difference, and whether the part that it drives may rest.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    fn spread(&mut self, states: &[Interval], visit: &mut dyn FnMut(usize, f64, bool));
 }
 
 /// What compensations near one motion share.

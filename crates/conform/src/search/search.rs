@@ -77,7 +77,8 @@ pub(super) fn search<'a>(
         // Pose the program, solve it, and take the answer.
         let mut round = plant.round(&mut state, before.take())?;
         let solution = round.program.solve_from(&mut round.rows)?;
-        let is_settled = state.take(&solution.sets, round.program.cost(&solution.sets));
+        let is_settled =
+            state.take(&problem.kinds(), &solution.sets, round.program.cost(&solution.sets));
         journal.save(&state)?;
         if !is_exact {
             progress.finished(&linearised(&state));

@@ -53,7 +53,7 @@ pub(super) fn round<'a>(problem: &'a Problem, state: &mut SearchState) -> Result
     let (settings, shape) = (problem.settings(), problem.shape());
     let mut program =
         Program::new((settings, shape), &settings.weights.of_states(shape.states), blocks)
-            .with_centre_bounds(state.centre_bounds())
+            .with_centre_bounds(state.centre_bounds(&problem.kinds()))
             .with_limits(problem.limits());
     program.cuts = cuts;
     Ok(Round { rows: program.first_rows(), program, runs_away })

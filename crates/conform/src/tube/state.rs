@@ -1,7 +1,6 @@
 //! The state of a search between rounds.
 
 use std::collections::HashMap;
-use std::ops::Range;
 
 use reachtube_reach::Hyperrectangle;
 use serde::{Deserialize, Serialize};
@@ -78,8 +77,8 @@ impl SearchState {
     /// Takes the sets that a program gave, with their cost, and returns whether they have settled.
     /// Where answers jump back and forth, as answers of the same cost may do, centres get less
     /// freedom.
-    pub(crate) fn take(&mut self, sets: &UncertaintySets, cost: f64) -> bool {
-        let change = change(&self.sets, sets);
+    pub(crate) fn take(&mut self, kinds: &[Vec<usize>], sets: &UncertaintySets, cost: f64) -> bool {
+        let change = change(kinds, &self.sets, sets);
         if change > SHRINKS * self.change {
             self.freedom = 0.5 * self.freedom.min(change);
         }
@@ -89,18 +88,23 @@ impl SearchState {
         is_settled
     }
 
-    /// Returns the bounds of the centres of X0 and U in the next round; none when they are free.
-    pub(crate) fn centre_bounds(&self) -> Vec<[f64; 2]> {
+    /// Returns the bounds of the centres of X0 and U in the next round, for the states of each kind
+    /// and the inputs; none when they are free.
+    pub(crate) fn centre_bounds(&self, kinds: &[Vec<usize>]) -> Vec<[f64; 2]> {
         if self.freedom == f64::MAX {
             return Vec::new();
         }
-        let n = self.sets.input_set.dimension();
-        let around = |set: &Hyperrectangle, kind: Range<usize>| {
-            let reach = self.freedom * largest(set, kind.clone());
-            set.centre[kind].iter().map(|c| [c - reach, c + reach]).collect::<Vec<_>>()
-        };
         let (x, u) = (&self.sets.initial_set, &self.sets.input_set);
-        [around(x, 0..n), around(x, n..2 * n), around(u, 0..n)].concat()
+        let mut bounds = vec![[0.0; 2]; x.dimension() + u.dimension()];
+        let mut around = |set: &Hyperrectangle, first: usize, kind: &[usize]| {
+            let reach = self.freedom * largest(set, kind);
+            for &i in kind {
+                bounds[first + i] = [set.centre[i] - reach, set.centre[i] + reach];
+            }
+        };
+        kinds.iter().for_each(|kind| around(x, 0, kind));
+        around(u, x.dimension(), &(0..u.dimension()).collect::<Vec<_>>());
+        bounds
     }
 
     /// Returns the directions, to be asked of reachable sets.
@@ -146,24 +150,23 @@ impl Margin {
     }
 }
 
-/// Returns the largest change of a centre or radius, in parts of the largest of its kind:
-/// positions, velocities, inputs.
-fn change(old: &UncertaintySets, new: &UncertaintySets) -> f64 {
-    let n = new.input_set.dimension();
-    let of_kind = |old: &Hyperrectangle, new: &Hyperrectangle, kind: Range<usize>| {
+/// Returns the largest change of a centre or radius, in parts of the largest of its kind: states of
+/// one kind, such as positions, or inputs.
+fn change(kinds: &[Vec<usize>], old: &UncertaintySets, new: &UncertaintySets) -> f64 {
+    let of_kind = |old: &Hyperrectangle, new: &Hyperrectangle, kind: &[usize]| {
         let pairs = |x: &[f64], y: &[f64]| -> f64 {
-            kind.clone().map(|i| (x[i] - y[i]).abs()).fold(0.0, f64::max)
+            kind.iter().map(|&i| (x[i] - y[i]).abs()).fold(0.0, f64::max)
         };
         let change = pairs(&old.centre, &new.centre).max(pairs(&old.radius, &new.radius));
         if change == 0.0 { 0.0 } else { change / largest(new, kind) }
     };
-    let (x, u) = ((&old.initial_set, &new.initial_set), (&old.input_set, &new.input_set));
-    [of_kind(x.0, x.1, 0..n), of_kind(x.0, x.1, n..2 * n), of_kind(u.0, u.1, 0..n)]
-        .into_iter()
-        .fold(0.0, f64::max)
+    let inputs: Vec<usize> = (0..new.input_set.dimension()).collect();
+    let of_states = kinds.iter().map(|kind| of_kind(&old.initial_set, &new.initial_set, kind));
+    of_states.fold(of_kind(&old.input_set, &new.input_set, &inputs), f64::max)
 }
 
 /// Returns the largest magnitude of a centre or radius.
-fn largest(set: &Hyperrectangle, kind: Range<usize>) -> f64 {
-    set.centre[kind.clone()].iter().chain(&set.radius[kind]).fold(0.0, |max, x| max.max(x.abs()))
+fn largest(set: &Hyperrectangle, kind: &[usize]) -> f64 {
+    let sizes = kind.iter().flat_map(|&i| [set.centre[i], set.radius[i]]);
+    sizes.fold(0.0, |max, x| max.max(x.abs()))
 }
