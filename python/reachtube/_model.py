@@ -207,7 +207,10 @@ class Model(Record):
     @property
     def robot(self) -> Robot:
         """The robot."""
-        return Robot.from_dict(self._content["robot"])
+        robot = dict(self._content["drive"]["robot"])
+        if "seen" in self._content:
+            robot["identified_from"] = self._content["seen"]
+        return Robot.from_dict(robot)
 
     @property
     def a(self) -> Array | None:
@@ -227,7 +230,8 @@ class Model(Record):
     @property
     def state_units(self) -> tuple[str, ...]:
         """The units of the states, 2n: rad and rad/s, or m and m/s for prismatic joints."""
-        kinds = [joint.get("type", "revolute") for joint in self._content["robot"]["joint"]]
+        joints = self._content["drive"]["robot"]["joint"]
+        kinds = [joint.get("type", "revolute") for joint in joints]
         lengths = ["m" if kind == "prismatic" else "rad" for kind in kinds]
         return (*lengths, *(f"{unit}/s" for unit in lengths))
 

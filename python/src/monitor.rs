@@ -66,7 +66,7 @@ impl NativeMonitor {
                 monitor.watch(&known)?;
                 alarm_bound = Some(known.bound());
             }
-            let robot = Robot::from_description(&model.robot)?;
+            let robot = Robot::from_description(&model.robot())?;
             let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind));
             let (joints, alarms) = (joints.collect(), Vec::new());
             Ok(Self { monitor, joints, first: None, alarms, alarm_bound })

@@ -34,7 +34,8 @@ def names_left_out(model: rt.Model) -> dict[str, Any]:
     for key in ("sha256", "data"):
         content.pop(key)
     # Digests of recordings, which are of files in a fleet and of arrays in memory.
-    content["robot"].pop("identified_from", None)
+    content["drive"]["robot"].pop("identified_from", None)
+    content.pop("seen", None)
     return content
 
 

@@ -128,7 +128,7 @@ impl Check {
 
     /// Words the answer.
     fn with_findings(mut self, model: &Model) -> Self {
-        let (verdict, kinds) = (&self.verdict, model.robot.kinds());
+        let (verdict, kinds) = (&self.verdict, model.drive.robot.kinds());
         let set = verdict.enclosure.set_name();
         let mut findings = vec![findings::verdict_of_check(verdict, &self.provenance.settings)];
         findings.extend(findings::vacuous(model));

@@ -28,7 +28,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
     let Sources { model, problem, check, .. } = *sources;
     let figures = suite_figures(sources)?;
     Ok(Page {
-        title: format!("{}: reachset conformance", model.robot.name),
+        title: format!("{}: reachset conformance", model.drive.robot.name),
         subtitle: format!(
             "Model {} of order {}{}, {} in {}",
             u32::from(model.settings.abstraction.model),
@@ -97,7 +97,7 @@ fn sets_table(model: &Model) -> SetsTable {
     let bounds = |set: &Hyperrectangle, i: usize| <[f64; 2]>::from(set.bounds(i));
     let row = |joint: usize| JointSets {
         joint: joint_name(model, joint),
-        kind: model.robot.joints[joint].kind,
+        kind: model.drive.robot.joints[joint].kind,
         x0_q: bounds(&model.initial_set, joint),
         x0_qd: bounds(&model.initial_set, n + joint),
         u: bounds(&model.input_set, joint),

@@ -29,7 +29,7 @@ pub(super) fn cost_unit(model: &Model) -> String {
 
 /// Returns the unit of sums of widths over samples, in brackets.
 pub(super) fn sum_unit(model: &Model) -> String {
-    let kinds = model.robot.kinds();
+    let kinds = model.drive.robot.kinds();
     let is_shared = kinds.iter().all(|kind| *kind == kinds[0]);
     match &model.settings.weights {
         Weights::Unit if is_shared && !kinds.is_empty() => {
@@ -90,7 +90,7 @@ fn by_joint(model: &Model, figures: &[SuiteFigure]) -> TextTable {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share / all);
     let row = |joint: usize| {
         let (q, qd) = (shares[joint], shares[n + joint]);
-        vec![model.robot.joints[joint].name.clone(), percent(q), percent(qd), percent(q + qd)]
+        vec![model.drive.robot.joints[joint].name.clone(), percent(q), percent(qd), percent(q + qd)]
     };
     TextTable {
         title: "Share of the cost per joint: weighted width of the set over the drawn suites"

@@ -73,7 +73,7 @@ fn facts_of_sets(model: &Model) -> Vec<(String, String)> {
     let Some(said) = &model.usefulness else { return Vec::new() };
     let horizon = format!("{} s", significant(said.horizon, 3));
     let widest = said.worst().map(|(joint, _)| {
-        let kind = model.robot.joints[joint].kind;
+        let kind = model.drive.robot.joints[joint].kind;
         ("Widest set".into(), words(&joint_name(model, joint), &said.joints[joint], kind))
     });
     [("Horizon".into(), horizon)].into_iter().chain(widest).collect()
@@ -222,7 +222,7 @@ fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
         "The widest set beside the motion, of {name}, in the longest suite: the reachable \
          set{with} (grey area), the nominal motion (grey line) and the recorded motion (blue)."
     );
-    let unit = model.robot.joints[joint].kind.position_unit();
+    let unit = model.drive.robot.joints[joint].kind.position_unit();
     let chart = Chart {
         title: format!("{name} in suite {suite}"),
         x: "time [s]".into(),

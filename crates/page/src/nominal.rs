@@ -82,7 +82,7 @@ fn costs(model: &Model, fit: &FitRecord) -> TextTable {
 
 fn parameter(model: &Model, p: &FittedParameter) -> Vec<String> {
     vec![
-        format!("{}: {} [{}]", model.robot.joints[p.joint - 1].name, p.name, p.unit),
+        format!("{}: {} [{}]", model.drive.robot.joints[p.joint - 1].name, p.name, p.unit),
         four_decimals(p.identified),
         p.standard_error.map_or_else(|| "-".into(), four_decimals),
         four_decimals(p.fitted),

@@ -22,7 +22,7 @@ pub(super) fn phase_planes(problem: &Problem, model: &Model) -> Result<Vec<Chart
 }
 
 fn chart(plane: &PhasePlane, model: &Model) -> Chart {
-    let joint = &model.robot.joints[plane.joint];
+    let joint = &model.drive.robot.joints[plane.joint];
     let kind: JointKind = joint.kind;
     let [[q_low, q_high], [v_low, v_high]] = plane.hull;
     let line = |points: Vec<(f64, f64)>, colour| Series { points, dots: false, colour };

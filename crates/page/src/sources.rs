@@ -38,6 +38,7 @@ impl Sources<'_> {
 
 pub(super) fn joint_name(model: &Model, joint: usize) -> String {
     model
+        .drive
         .robot
         .joints
         .get(joint)

@@ -105,7 +105,7 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     Ok(SuiteFigure {
         suite: name.clone(),
         joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
-        kinds: model.robot.kinds(),
+        kinds: model.drive.robot.kinds(),
         times: longest.times.clone(),
         band,
         positions_only,

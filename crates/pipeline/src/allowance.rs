@@ -89,7 +89,7 @@ impl Widened {
 
     /// Returns the allowance in words.
     pub(crate) fn words(&self) -> String {
-        let joints = &self.answer.model.robot.joints;
+        let joints = &self.answer.model.drive.robot.joints;
         let of_input = self.allowance.iter().skip(2 * joints.len()).copied().enumerate();
         match of_input.max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((joint, most)) => {

@@ -96,7 +96,7 @@ impl HeldOut {
         horizon: f64,
         are_whole: bool,
     ) -> Result<(Self, BTreeSet<String>)> {
-        let n = answer.model.robot.joints.len();
+        let n = answer.model.drive.robot.joints.len();
         let none = BTreeSet::new();
         let windows = match recordings.cut(horizon, usize::MAX) {
             Err(Error::NoWindow { .. }) => {

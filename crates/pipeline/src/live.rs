@@ -34,7 +34,7 @@ impl LiveMonitor {
         let log = match &model.preparation {
             None => None,
             Some(known) => {
-                let robot = Robot::from_description(&model.robot)?;
+                let robot = Robot::from_description(&model.robot())?;
                 Some(LiveLog::new(&robot, known, velocity, step, longest_gap)?)
             }
         };
@@ -58,7 +58,7 @@ impl LiveMonitor {
             return Ok(HealthyMotion::learn(model, schedule, runs)?);
         };
         let Schedule { step, longest_gap, .. } = schedule;
-        let robot = Robot::from_description(&model.robot)?;
+        let robot = Robot::from_description(&model.robot())?;
         let mut log = LiveLog::new(&robot, known, velocity, step, longest_gap)?;
         let mut prepared = MemoryRuns::default();
         for index in 0..runs.runs().len() {

@@ -53,7 +53,7 @@ pub fn prepared(
     max_gap: Option<f64>,
 ) -> Result<MemoryRuns> {
     let Preparation { torque, gains, cut_off, window, columns, log, .. } = preparation;
-    let robot = Robot::from_description(&model.robot)?;
+    let robot = Robot::from_description(&model.robot())?;
     let settings = PrepareSettings {
         gains: gains.clone(),
         torque: Some(*torque),
@@ -64,7 +64,7 @@ pub fn prepared(
     };
     let raw = read_logs(paths, &robot, &settings)?;
     window.map_or(Ok(()), |window| check_window(window, &raw))?;
-    if let Some(warming) = model.correction.as_ref().filter(|known| known.differs_by_run()) {
+    if let Some(warming) = model.drive.correction.as_ref().filter(|known| known.differs_by_run()) {
         let logs: Vec<&RawLog> = raw.iter().collect();
         if let Some(file) = unknown_warmth(&logs, warming.reference_temperatures.is_some()) {
             let value = format!("{}, for a model whose friction warms up", file.display());

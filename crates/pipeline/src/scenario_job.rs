@@ -54,7 +54,7 @@ impl ScenarioJob {
     ///
     /// As [`new`](Self::new).
     pub fn with_model(scenario: Scenario, model: Model, setup: Setup) -> Result<Self> {
-        let robot = Robot::from_description(&model.robot)?;
+        let robot = Robot::from_description(&model.robot())?;
         let scene = scenario.scene(&robot)?;
         let body = Body::new(&robot, &Capsules::open(scenario.capsules.as_deref(), &robot)?);
         Ok(Self { scenario, model, setup, body, scene })

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             witness.time,
             witness.state,
             witness.excess,
-            witness.state.kind.unit(model.robot.joints[witness.state.joint].kind)
+            witness.state.kind.unit(model.drive.robot.joints[witness.state.joint].kind)
         );
     }
     Ok(())

@@ -86,9 +86,10 @@ SETS = [
     ("a suite less, with the old bound", lambda files: files.content["data"]["suites"].pop(), 2),
     ("a noise set, with the old cost",
      entry("noise_set", {"centre": [0.0] * 12, "radius": [1e-3] * 12}), 1),
-    ("a link's mass, which compensated torques do not need", entry("robot.joint.1.mass", 9.0), 0),
+    ("a link's mass, which compensated torques do not need",
+     entry("drive.robot.joint.1.mass", 9.0), 0),
     ("the digest of a recording", entry("data.suites.0.runs.0.sha256", "0" * 64), 2),
-    ("version 2", entry("version", 2), 3),
+    ("version 3", entry("version", 3), 3),
     ("a negative radius", scaled(U, -1.0, largest), 3),
     ("a row of A is missing", lambda files: files.content["a"].pop(), 3),
     ("a number that is no number", entry("cost", float("nan")), 3),
@@ -138,7 +139,7 @@ CUBIC = [
     ("sets 2 % larger", ROOMY, [], 0),
     ("U 2 % smaller", scaled(U, 0.98), [], 1),
     ("X0 2 % smaller", scaled(X0, 0.98), [], 1),
-    ("friction 2 % larger", scaled("acceleration.0.0", 1.02, lambda term: 1), [], 1),
+    ("friction 2 % larger", scaled("drive.acceleration.0.0", 1.02, lambda term: 1), [], 1),
     ("sets of one point", TO_POINT, [], 1),
     ("sets of one point, with the old files", TO_POINT, REACH, 3),
     ("the files as they are", nothing, REACH, 2),
@@ -149,7 +150,7 @@ CUBIC = [
     ("files without a record", lambda files: files.put("cubic/reach.json", ""), REACH, 3),
     ("rows that are missing", after(lines_of("cubic/M1a.csv", drop_line(-1)), of_record), REACH, 3),
     ("notion exact", after(ROOMY, entry("settings.notion", "exact")), [], 2),
-    ("a variable that is unknown", entry("variables.3", "w4"), [], 3),
+    ("a variable that is unknown", entry("drive.variables.3", "w4"), [], 3),
 ]
 
 MUTANTS = [

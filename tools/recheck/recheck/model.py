@@ -83,23 +83,24 @@ def _refuse_constant(name):
 
 
 def _model(content, text):
-    if content["format"] != "reachtube-model" or content["version"] != 3:
-        raise BadInput("it is no model file of version 3")
-    is_linear = "a" in content and not content.get("acceleration")
-    n = len(content["robot"]["joint"])
+    if content["format"] != "reachtube-model" or content["version"] != 4:
+        raise BadInput("it is no model file of version 4; run `reachtube conform` again")
+    drive = content["drive"]
+    is_linear = "a" in content and not drive.get("acceleration")
+    n = len(drive["robot"]["joint"])
     noise, digest = content.get("noise_set"), _digest(content, text)
     model = Model(
         joints=n,
         a=_rows(content["a"], 2 * n, 2 * n, "a") if is_linear else None,
         b=_rows(content["b"], 2 * n, n, "b") if is_linear else None,
         drift=_numbers(content["drift"], 2 * n, "drift") if is_linear else None,
-        polynomials=None if is_linear else Polynomials.of_file(content, n),
+        polynomials=None if is_linear else Polynomials.of_file(drive, n),
         initial_set=_box(content["initial_set"], 2 * n, "initial_set"),
         input_set=_box(content["input_set"], n, "input_set"),
         noise_radius=_noise(noise, n),
         settings=content["settings"],
-        correction=content.get("correction"),
-        robot=content["robot"],
+        correction=drive.get("correction"),
+        robot=drive["robot"],
         suites=content["data"]["suites"],
         root=content["data"].get("root"),
         sha256=content["sha256"],

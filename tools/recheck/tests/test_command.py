@@ -68,7 +68,7 @@ def test_inputs_known_to_a_tolerance_leave_tight_rows_open(tmp_path, capsys):
     model = toy.content(torque="link")
     toy.write(tmp_path, model)
     gravity_free = {**toy.ROBOT, "gravity": [0.0, 0.0, 0.0]}
-    model["robot"] = gravity_free
+    model["drive"]["robot"] = gravity_free
     (tmp_path / "model.json").write_text(json.dumps(model))
     code, found = judged(tmp_path, capsys)
     assert code == 0 and "computed here" in "".join(found["claim"]["conditions"])
@@ -78,7 +78,7 @@ def test_inputs_known_to_a_tolerance_leave_tight_rows_open(tmp_path, capsys):
 
 def test_given_inputs_settle_what_was_open(tmp_path, capsys):
     model = toy.content(torque="link")
-    model["robot"] = {**toy.ROBOT, "gravity": [0.0, 0.0, 0.0]}
+    model["drive"]["robot"] = {**toy.ROBOT, "gravity": [0.0, 0.0, 0.0]}
     toy.write(tmp_path, model)
     lines = ["file,k,u1,u2"]
     for run in range(4):

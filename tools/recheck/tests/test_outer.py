@@ -35,13 +35,14 @@ def content():
     model = toy.content()
     for key in ("a", "b", "drift"):
         del model[key]
-    model["variables"], model["origin"] = NAMES, [0.0] * 8
-    model["acceleration"] = [
+    drive = model["drive"]
+    drive["variables"], drive["origin"] = NAMES, [0.0] * 8
+    drive["acceleration"] = [
         [term(-v, **{f"qd{j + 1}": 1}), term(-BEND * v, **{f"qd{j + 1}": 3}),
          *(term(b, **{f"u{i + 1}": 1}) for i, b in enumerate(toy.TORQUE[j]))]
         for j, v in enumerate(toy.V1)
     ]
-    model["acceleration"][1].append(term(PULL, s1=1))
+    drive["acceleration"][1].append(term(PULL, s1=1))
     return model
 
 
@@ -191,7 +192,7 @@ def test_a_value_between_what_is_reached_and_what_is_enclosed_is_undecided(tmp_p
 
 def test_a_set_that_runs_away_is_lost_and_its_rows_are_undecided(tmp_path, capsys):
     model, _ = write(tmp_path, part=0.5)
-    for joint in model["acceleration"]:
+    for joint in model["drive"]["acceleration"]:
         joint.append([[3, *[0] * 7], 1e7])
     toy.relist(tmp_path, model)
     code, found = judged(tmp_path, capsys)

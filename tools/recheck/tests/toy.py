@@ -23,7 +23,7 @@ ROBOT = {
 }
 CONTENT = {
     "format": "reachtube-model",
-    "version": 3,
+    "version": 4,
     "a": [[0, 0, 1, 0], [0, 0, 0, 1], [0, 0, -V1[0], 0], [0, 0, 0, -V1[1]]],
     "b": [[0, 0], [0, 0], list(TORQUE[0]), list(TORQUE[1])],
     "drift": [0.0, 0.0, 0.0, 0.0],
@@ -34,7 +34,7 @@ CONTENT = {
         "centre": "free",
         "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]},
     },
-    "robot": ROBOT,
+    "drive": {"robot": ROBOT},
     "data": {"suites": []},
     "sha256": "",
 }

@@ -138,7 +138,7 @@ fn text(
     let heading = held_out_heading(recorded);
     let model = &opened.model;
     if global().verbose {
-        let report = held_out.report(&model.robot.kinds());
+        let report = held_out.report(&model.drive.robot.kinds());
         return format!("{}\n{heading}\n{report}", model.report());
     }
     let model = Summary { next: None, ..summary };

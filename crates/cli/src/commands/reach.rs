@@ -90,7 +90,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
             "data": data,
         }))?;
     } else {
-        let kinds = model.robot.kinds();
+        let kinds = model.drive.robot.kinds();
         let q = JointKind::any_unit(&kinds, JointKind::position_unit);
         let qd = JointKind::any_unit(&kinds, JointKind::velocity_unit);
         let [q, qd] = [format!("widest q [{q}]"), format!("widest qd [{qd}]")];
@@ -110,7 +110,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Returns the name of a joint that may come to rest.
 fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
-    &model.robot.joints[rest.joint - 1].name
+    &model.drive.robot.joints[rest.joint - 1].name
 }
 
 fn rest_json(model: &Model, rest: &Stiction) -> serde_json::Value {

@@ -53,7 +53,7 @@ fn a_nonlinear_model_goes_through_every_command() {
         (&model["proof"]["enclosure"], &model["settings"]["method"]),
         (&json!("outer"), &json!("program"))
     );
-    assert_eq!(model["acceleration"].as_array().unwrap().len(), 2);
+    assert_eq!(model["drive"]["acceleration"].as_array().unwrap().len(), 2);
     let check = lab.check("--json").exits(0).json();
     assert_eq!((&check["rows"], &check["violations"]["count"]), (&408.into(), &0.into()));
     lab.run("reach --model model.json --data data --torque compensated --out reach").exits(0);

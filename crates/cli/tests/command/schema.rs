@@ -60,7 +60,8 @@ fn what_conform_prints_is_a_model_file_with_findings() {
 fn the_embedded_robot_fits_the_schema() {
     let (schema, lab) = (schema(), Lab::new());
     let mut model = lab.conform("--json").exits(0).json();
-    model["robot"] = lab.run("robot show lwa4p --json").exits(0).json()["description"].clone();
+    model["drive"]["robot"] =
+        lab.run("robot show lwa4p --json").exits(0).json()["description"].clone();
     assert_eq!(complaints(&schema, &model), Vec::<String>::new());
 }
 
@@ -81,7 +82,7 @@ fn the_schema_refuses_what_the_program_refuses() {
         (set("/format", json!("other")), "format is not"),
         (
             set("/version", json!(1)),
-            "version 1 of the format, but this program reads version 3; run conform again",
+            "version 1 of the format, but this program reads version 4; run conform again",
         ),
         (set("/cost", json!(null)), "it has no cost"),
         (set("/input_set/radius/0", json!(-0.1)), "input_set or noise_set"),

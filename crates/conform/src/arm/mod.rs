@@ -11,6 +11,7 @@ mod input_error;
 mod loads;
 mod parameters;
 mod quantity;
+pub(crate) mod record;
 mod rising;
 mod robot_equations;
 mod setup;
@@ -18,3 +19,4 @@ pub(crate) mod system;
 
 pub use correction::{InputCorrection, JointCorrection};
 pub(crate) use corrector::only_payload;
+pub use record::DriveRecord;

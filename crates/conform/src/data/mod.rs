@@ -26,7 +26,7 @@ pub(crate) mod summary;
 pub(crate) mod totals;
 pub(crate) mod tree;
 
-pub use crate::arm::{InputCorrection, JointCorrection};
+pub use crate::arm::{DriveRecord, InputCorrection, JointCorrection};
 pub use case::Case;
 pub use condition::Condition;
 pub use envelope::Envelope;

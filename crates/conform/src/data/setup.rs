@@ -62,8 +62,8 @@ pub(crate) trait Drive: Debug + Send + Sync {
     /// Returns the parts of the system, whose states are looked at together.
     fn parts(&self) -> &[Part];
 
-    /// Returns what finds how far the dry part of the inputs may differ between states; `None` where
-    /// the inputs have no such part.
+    /// Returns what finds how far dry friction of the inputs may differ between states; `None`
+    /// where the inputs have none.
     fn dry_friction(&self) -> Option<Box<dyn DryFriction + '_>>;
 
     /// Returns whether the input depends on the condition of the run.

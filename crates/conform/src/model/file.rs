@@ -5,7 +5,6 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use nalgebra::DMatrix;
-use reachtube_abstraction::{PolynomialModel, Records, TermRecord};
 use reachtube_files::{json, write};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_recordings::Preparation;
@@ -14,8 +13,7 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::arm::correction::InputCorrection;
-use crate::arm::system::polynomials;
+use crate::arm::record::DriveRecord;
 use crate::claim::verdict::Verdict;
 use crate::conformance::Conformance;
 use crate::data::problem::Problem;
@@ -43,7 +41,7 @@ pub(crate) const FORMAT: &str = "reachtube-model";
 
 /// The version of the format that this library writes and reads; the schema is
 /// `docs/model.schema.json`.
-pub(crate) const VERSION: u32 = 3;
+pub(crate) const VERSION: u32 = 4;
 
 const REMEDY: &str = "give a file that `model` or `conform` wrote, such as arm/model.json";
 
@@ -145,9 +143,6 @@ pub struct Model {
     /// logs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preparation: Option<Preparation>,
-    /// What is taken off the recorded inputs along the nominal motions, where anything is.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub correction: Option<InputCorrection>,
     /// The sets that hold for every run and every warmth of the joints.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub any_run: Option<AnyRun>,
@@ -163,20 +158,13 @@ pub struct Model {
     /// d of ẋ = A x + B u + d, 2n; zero about q̇ = 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drift: Vec<f64>,
-    /// Names of the variables of the polynomials of a model that is not linear, as in the file of
-    /// an abstraction.
+    /// What drives the system: the robot, and the polynomials of a model that is not linear.
+    pub drive: DriveRecord,
+    /// SHA-256 of the recordings that the drive was identified from or fitted to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub variables: Vec<String>,
-    /// What the polynomials' variables are offsets from.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub origin: Vec<f64>,
-    /// For each joint, the terms of its acceleration, rad/s².
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub acceleration: Vec<Vec<TermRecord>>,
+    pub seen: Vec<String>,
     /// The recordings.
     pub data: DataRecord,
-    /// The robot.
-    pub robot: RobotDescription,
     /// The findings that the command prints beside the model. They follow from the rest and are
     /// not read.
     #[serde(default, skip_serializing)]
@@ -193,10 +181,6 @@ impl Model {
         let UncertaintySets { initial_set, input_set, noise_set } = found.sets.clone();
         let finite = |value: f64| value.is_finite().then_some(value);
         let linear = dynamics.linear_system();
-        let polynomial = match linear {
-            Some(_) => Records::default(),
-            None => polynomials(dynamics).map(PolynomialModel::records).unwrap_or_default(),
-        };
         let matrix =
             |of: fn(&LinearSystem) -> &DMatrix<f64>| linear.map_or_else(Vec::new, |s| rows(of(s)));
         Self {
@@ -230,17 +214,14 @@ impl Model {
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),
             preparation: None,
-            correction: problem.setup().arm().correction.clone(),
             any_run: found.any_run.clone(),
             fit: None,
             a: matrix(LinearSystem::a),
             b: matrix(LinearSystem::b),
             drift: linear.map_or_else(Vec::new, |system| system.drift().iter().copied().collect()),
-            variables: polynomial.variables,
-            origin: polynomial.origin,
-            acceleration: polynomial.acceleration,
+            drive: DriveRecord::new(problem.setup().arm(), dynamics),
+            seen: problem.setup().drive.seen().to_vec(),
             data: DataRecord::new(problem),
-            robot: problem.robot().description().clone(),
             findings: IgnoredAny,
             sha256: String::new(),
         }
@@ -334,7 +315,7 @@ impl Model {
         }
         let runs = self.data.suites.iter().flat_map(|suite| &suite.runs);
         let own = runs.flat_map(|run| std::iter::once(&run.sha256).chain(&run.origin));
-        let seen = own.chain(&self.robot.identified_from);
+        let seen = own.chain(&self.seen);
         let fitted: HashSet<&str> = seen.map(String::as_str).collect();
         let mut runs = recordings.suites.iter().flat_map(|suite| &suite.runs);
         if runs.any(|run| run.is_among(&fitted)) {
@@ -354,6 +335,14 @@ impl Model {
     pub fn gap_of_not_minimal(&self) -> Option<f64> {
         let largest = self.settings.notion.largest_gap();
         self.optimality_gap.filter(|gap| *gap > largest)
+    }
+
+    /// Returns the robot, identified from all recordings that it or a fit of it has seen.
+    #[must_use]
+    pub fn robot(&self) -> RobotDescription {
+        let mut robot = self.drive.robot.clone();
+        robot.add_identified_from(self.seen.iter().cloned());
+        robot
     }
 
     /// Returns the number of joints n.

@@ -21,7 +21,9 @@ impl Model {
             self.left_out = record.leave_one_out.iter().map(LeftOut::from).collect();
         }
         let seen = self.fitted_runs();
-        self.robot.add_identified_from(seen);
+        let mut robot = self.robot();
+        robot.add_identified_from(seen);
+        self.seen = robot.identified_from;
         Self { fit: Some(record), ..self }.sealed()
     }
 

@@ -1,7 +1,7 @@
 //! Whether the parts of a model file fit together.
 
 use nalgebra::{DMatrix, DVector};
-use reachtube_abstraction::{PolynomialModel, Records};
+use reachtube_abstraction::PolynomialModel;
 use reachtube_reach::{Hyperrectangle, LinearSystem, System};
 use reachtube_robot::Robot;
 
@@ -19,7 +19,7 @@ const SAME: f64 = 1e-9;
 impl Model {
     /// Checks that all lists have the sizes that the robot asks for.
     pub(super) fn check_sizes(&self) -> Result<(), String> {
-        let n = self.robot.joints.len();
+        let n = self.drive.robot.joints.len();
         let is = |matrix: &[Vec<f64>], columns: usize| {
             matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
         };
@@ -29,7 +29,7 @@ impl Model {
         let are_wider = self.calibration.is_some() || !self.allowance.is_empty();
         let lower_bound = self.cost_lower_bound.or(are_wider.then_some(0.0));
         let costs = [self.cost, lower_bound, self.cost_paper, self.hull_volume];
-        let is_linear = self.acceleration.is_empty();
+        let is_linear = self.drive.acceleration.is_empty();
         let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
         let none = self.a.is_empty() && self.b.is_empty() && self.drift.is_empty();
         let sets = set(&self.initial_set, 2 * n)
@@ -58,7 +58,7 @@ impl Model {
             format!("its allowance is not {} radii", 3 * n)
         } else if self.stiction.iter().any(|rest| !(1..=n).contains(&rest.joint)) {
             format!("its stiction names a joint that is not one of {n}")
-        } else if self.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
+        } else if self.drive.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
             format!("its correction is not one of {n} joints")
         } else {
             return self.settings.validate(n).map_err(|error| error.to_string());
@@ -78,14 +78,14 @@ impl Model {
         if self.verified != holds || holds && !all_hold {
             return Err(changed("verified does not agree with proof"));
         }
-        let robot = Robot::from_description(&self.robot).map_err(|error| error.to_string())?;
+        let robot = Robot::from_description(&self.robot()).map_err(|error| error.to_string())?;
         let dynamics = self.dynamics(&robot)?;
         if self.sha256 != self.digest() {
             return Err(changed("sha256 does not match the content"));
         }
         let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
         let nominal_starts = self.data.suites.iter().filter_map(start).collect();
-        let arm = Arm::new(robot, self.correction.clone(), &self.settings);
+        let arm = Arm::new(robot, self.drive.correction.clone(), &self.settings);
         Ok(Setup { nominal_starts, ..Setup::of_arm(arm, dynamics, self.settings.clone()) })
     }
 
@@ -94,12 +94,7 @@ impl Model {
         let Settings { abstraction, expansion_point, method, .. } = &self.settings;
         let mismatch =
             || changed("it has not the matrices or polynomials that its settings ask for");
-        if !self.acceleration.is_empty() {
-            let records = Records {
-                variables: self.variables.clone(),
-                origin: self.origin.clone(),
-                acceleration: self.acceleration.clone(),
-            };
+        if let Some(records) = self.drive.polynomials() {
             let model =
                 PolynomialModel::from_records(robot, *abstraction, expansion_point, records)
                     .map_err(|error| error.to_string())?;

@@ -19,7 +19,7 @@ impl Check {
     /// the reachable sets that were compared.
     #[must_use]
     pub fn summary(&self, model: &Model, tube: &Tube, front_end: FrontEnd) -> Summary {
-        let kinds = model.robot.kinds();
+        let kinds = model.drive.robot.kinds();
         let sets = AtHorizon::new(tube);
         let failing = failing(&self.verdict);
         // The cause and its remedy are part of the model's own answer.
@@ -142,7 +142,7 @@ fn table_of_suites(failing: &[&SuiteVerdict], kinds: &[JointKind]) -> Table {
 /// the velocities.
 fn widest(model: &Model, sets: &AtHorizon, kinds: &[JointKind]) -> (String, String) {
     let n = model.joints();
-    let name = |joint: usize| &model.robot.joints[joint].name;
+    let name = |joint: usize| &model.drive.robot.joints[joint].name;
     let q = widest_first(model, sets).first().copied().unwrap_or_default();
     let speed = |joint: &usize| sets.radii[n + joint];
     let qd = (0..n).max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or_default();

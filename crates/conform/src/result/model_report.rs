@@ -80,7 +80,7 @@ fn sets(model: &Model) -> Section {
     section.findings.extend(model.finding_of_stiction(&model.stiction));
     if let Some(noise) = &model.sensor_noise {
         let (q, qd) = noise.radius.split_at(model.joints());
-        let kinds = model.robot.kinds();
+        let kinds = model.drive.robot.kinds();
         let [position, velocity] = [JointKind::position_unit, JointKind::velocity_unit]
             .map(|unit| JointKind::units(&kinds, unit));
         let list = |radii: &[f64]| spaced(radii.iter().map(|radius| format!("{radius:.1e}")));
@@ -107,7 +107,7 @@ fn sets(model: &Model) -> Section {
         format!("q {} %; qd {} %", list(q), list(qd)),
     );
     if !model.input_error.is_empty() {
-        let unit = JointKind::units(&model.robot.kinds(), JointKind::force_unit);
+        let unit = JointKind::units(&model.drive.robot.kinds(), JointKind::force_unit);
         let errors = spaced(model.input_error.iter().map(|error| format!("{error:.2}")));
         section.fact("RMS torque error", format!("{errors} {unit}"));
     }
@@ -117,7 +117,7 @@ fn sets(model: &Model) -> Section {
 /// Returns the sets joint by joint.
 fn table_of_sets(model: &Model) -> Table {
     let n = model.joints();
-    let kinds = model.robot.kinds();
+    let kinds = model.drive.robot.kinds();
     let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
     let [q, qd, u] = units.map(|unit| ColumnUnit::new(&kinds, unit));
     let mut header = vec!["joint".into(), q.head("X0 q"), qd.head("X0 qd"), u.head("U")];
@@ -126,7 +126,7 @@ fn table_of_sets(model: &Model) -> Table {
     }
     let row = |joint: usize| {
         let mut row = vec![
-            model.robot.joints[joint].name.clone(),
+            model.drive.robot.joints[joint].name.clone(),
             q.cell(joint, interval(model.initial_set.bounds(joint))),
             qd.cell(joint, interval(model.initial_set.bounds(n + joint))),
             u.cell(joint, interval(model.input_set.bounds(joint))),
@@ -142,7 +142,7 @@ fn table_of_sets(model: &Model) -> Table {
 
 /// Returns the recorded values that touch the reachable sets.
 fn touching(model: &Model) -> Section {
-    let kinds = model.robot.kinds();
+    let kinds = model.drive.robot.kinds();
     // Margins of both units stand in one column.
     let is_plain = kinds.iter().all(|kind| *kind == JointKind::Revolute);
     let unit = |state: &State| match is_plain {

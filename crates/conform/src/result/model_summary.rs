@@ -132,7 +132,7 @@ pub(super) fn brief(finding: &Finding) -> String {
 /// Returns the sets at the horizon joint by joint.
 pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f64]>) -> Table {
     let n = model.joints();
-    let kinds = model.robot.kinds();
+    let kinds = model.drive.robot.kinds();
     let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
     let [q, qd, u] = units.map(|unit| ColumnUnit::new(&kinds, unit));
     let mut header = vec![
@@ -149,7 +149,7 @@ pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f
     };
     let row = |joint: usize| {
         let mut row = vec![
-            model.robot.joints[joint].name.clone(),
+            model.drive.robot.joints[joint].name.clone(),
             half(&q, joint, sets.radii[joint]),
             share(model, joint, sets.radii[joint]),
             half(&qd, joint, sets.radii[n + joint]),

@@ -57,7 +57,7 @@ pub(crate) fn fold_of(setup: &Setup, runs: &dyn RunSource) -> Fold {
 
 /// Checks recordings against a model, as its file would.
 pub(crate) fn check_against(model: &Model, folder: &Path, names: &[&str]) -> Check {
-    let robot = Robot::from_description(&model.robot).unwrap();
+    let robot = Robot::from_description(&model.robot()).unwrap();
     let problem = read(&robot, folder, names, &model.settings);
     let tube = Tube::new(&problem, model.sets()).unwrap();
     check(model, &problem, &tube).unwrap()

@@ -2,8 +2,11 @@
 //! refused.
 
 use crate::common::{Disturbed, Random, grid, two_joints};
+use std::path::Path;
+
 use reachtube_conform::{
-    Check, Error, Keep, Model, Problem, Settings, Setup, Silent, Tube, check, conform,
+    Answer, Check, Error, FitSettings, Group, Keep, Model, Problem, Settings, Setup, Silent, Tube,
+    check, conform,
 };
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
@@ -161,4 +164,22 @@ fn the_growth_that_is_named_encloses_the_recordings() {
             assert_eq!(again.growth.is_none(), encloses);
         }
     }
+}
+
+/// A fit has seen its recordings, whatever robot it began with, so that no bound may rest on them.
+#[test]
+fn a_model_that_is_read_again_has_seen_the_recordings_of_its_fit() {
+    let robot = two_joints();
+    let setup = Setup::new(robot.clone(), Settings::new(Torque::Compensated, 2)).unwrap();
+    let problem = read(setup, recorded(&robot, |name, _| Some(name.into())));
+    let settings = FitSettings { groups: vec![Group::Viscous], pull: Some(0.1) };
+    let Answer { model, problem, .. } =
+        Answer::new(problem, Some(&settings), None, &Silent).unwrap();
+    let sha256 = &problem.recordings().suites[0].runs[0].sha256;
+    let (model, setup) = Model::parse(&model.to_json(), Path::new("model")).unwrap();
+    assert!(model.seen.contains(sha256) && !sha256.is_empty());
+    assert!(model.robot().identified_from.contains(sha256));
+    assert!(setup.robot().description().identified_from.contains(sha256));
+    // The robot that was given is in the file as it was.
+    assert_eq!(model.drive.robot, *robot.description());
 }

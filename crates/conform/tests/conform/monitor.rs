@@ -27,7 +27,7 @@ fn model(robot: &Robot, settings: Settings, correction: Option<InputCorrection>)
     let problem = read_with(setup, folder.path(), &[]);
     let found = conform_all(&problem);
     let mut model = Model::new(&problem, &found);
-    model.correction = correction;
+    model.drive.correction = correction;
     // Its digest is made anew.
     Model::parse(&model.to_json(), Path::new("model")).unwrap().0
 }

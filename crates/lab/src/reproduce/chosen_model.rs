@@ -107,7 +107,7 @@ fn fitted(motions: &MemoryRuns, used: Range<usize>) -> Result<Robot> {
     let fitted = fit(&read, &settings, &Silent)?;
     let found = conform(&fitted.problem, &Silent, None)?;
     let model = Model::new(&fitted.problem, &found).with_fit(fitted.record);
-    Ok(Robot::from_description(&model.robot)?)
+    Ok(Robot::from_description(&model.robot())?)
 }
 
 fn candidate(random: &mut SplitMix64) -> Result<Robot> {

@@ -20,7 +20,7 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&args.out.join("robot_parameters.yaml"))?;
     let updates = args.update.iter().map(|path| read(path)).collect::<Result<Vec<_>>>()?;
     let opened = open(args, "the SaRA shield")?;
-    let robot = Robot::from_description(&opened.model.robot)?;
+    let robot = Robot::from_description(&opened.model.robot())?;
     let named = Capsules::open(args.capsules.as_deref(), &robot);
     let capsules = match (&args.capsules, updates.is_empty()) {
         // The shield's own file may have the capsules.

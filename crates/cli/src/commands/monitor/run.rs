@@ -38,7 +38,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if setup.dynamics().linear_system().is_none() {
         return Err(ConformError::NotLinear.into());
     }
-    let robot = Robot::from_description(&model.robot)?;
+    let robot = Robot::from_description(&model.robot())?;
     let mut watch = Watch {
         args,
         model: &model,

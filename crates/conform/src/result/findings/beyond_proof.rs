@@ -54,12 +54,13 @@ impl Model {
     }
 
     fn less_friction(&self) -> Option<Finding> {
-        let warms = self.robot.joints.iter().any(|joint| joint.friction.warming.is_some());
+        let warms = self.drive.robot.joints.iter().any(|joint| joint.friction.warming.is_some());
         let falls = |joint: &JointCorrection| {
             let parts = [&joint.coulomb[..], &[joint.warm_up, joint.warm_up_coulomb]].concat();
             parts.iter().any(|part| *part < 0.0)
         };
-        let lowered = self.correction.as_ref().is_some_and(|all| all.joints.iter().any(falls));
+        let lowered =
+            self.drive.correction.as_ref().is_some_and(|all| all.joints.iter().any(falls));
         let why = match (warms, lowered) {
             (true, _) => "it changes as the joints warm up",
             (false, true) => "the fit found less of it in some joints",

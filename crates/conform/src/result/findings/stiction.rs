@@ -16,9 +16,9 @@ impl Model {
     pub fn finding_of_stiction(&self, rests: &[Stiction]) -> Option<Finding> {
         let lack = |rest: &&Stiction| rest.torque - rest.room;
         let worst = rests.iter().max_by(|a, b| lack(a).total_cmp(&lack(b)))?;
-        let name = |rest: &Stiction| self.robot.joints[rest.joint - 1].name.clone();
+        let name = |rest: &Stiction| self.drive.robot.joints[rest.joint - 1].name.clone();
         let open: Vec<String> = rests.iter().filter(|rest| !rest.is_covered()).map(name).collect();
-        let unit = JointKind::any_unit(&self.robot.kinds(), JointKind::force_unit);
+        let unit = JointKind::any_unit(&self.drive.robot.kinds(), JointKind::force_unit);
         let is_held = self.settings.disturbance == Disturbance::Sample;
         let (mut severity, mut remedy) = (Severity::Info, None);
         let text = if !open.is_empty() {

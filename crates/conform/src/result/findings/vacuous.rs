@@ -15,7 +15,7 @@ const MOST_SETS: usize = 3;
 /// Which sets of a model are vacuous; none of a model that is useful or was not proved.
 pub(crate) fn vacuous(model: &Model) -> Option<Finding> {
     let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
-    let kinds = model.robot.kinds();
+    let kinds = model.drive.robot.kinds();
     let sets = worst_first(said);
     let place = place(&sets);
     let first = sets.iter().take(MOST_SETS);
@@ -42,7 +42,7 @@ pub(crate) fn vacuous_in_brief(model: &Model) -> Option<String> {
     let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
     let sets = worst_first(said);
     let worst = sets.first()?;
-    let kind = model.robot.kinds()[worst.joint - 1];
+    let kind = model.drive.robot.kinds()[worst.joint - 1];
     Some(format!("vacuous for {}: {}", place(&sets), described(worst, said, kind)))
 }
 
