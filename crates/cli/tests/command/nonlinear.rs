@@ -126,8 +126,8 @@ fn a_changed_model_is_refused() {
     let lab = bent();
     let model = conform(&lab, "--json").exits(0).json();
     for (path, value, words) in [
-        ("/acceleration/0/0/1", json!(-2.5), "changed after it was written"),
-        ("/variables/0", json!("q1"), "its variables are not"),
+        ("/drive/acceleration/0/0/1", json!(-2.5), "changed after it was written"),
+        ("/drive/variables/0", json!("q1"), "its variables are not"),
         ("/settings/method", json!("guess"), "unknown variant `guess`"),
         ("/settings/abstraction/order", json!(1), "but the model has 4 variables and order 1"),
     ] {

@@ -103,8 +103,12 @@ fn a_changed_part_is_refused() {
     for (path, value, words) in [
         ("/a/2/2", json!(-3.0), "a, b or drift does not agree with its robot"),
         ("/b/3/1", json!(2.5), "a, b or drift does not agree with its robot"),
-        ("/robot/joint/0/armature", json!(1.5), "a, b or drift does not agree with its robot"),
-        ("/robot/joint/0/armature", json!(-1.5), "armature = -1.5 is negative"),
+        (
+            "/drive/robot/joint/0/armature",
+            json!(1.5),
+            "a, b or drift does not agree with its robot",
+        ),
+        ("/drive/robot/joint/0/armature", json!(-1.5), "armature = -1.5 is negative"),
         ("/a/2", json!([0.0]), "has not the size for the 2 joints"),
         ("/settings/expansion_point/q", json!([0.0]), "expansion point"),
         ("/data/suites/0/runs/0/sha256", json!("0".repeat(64)), "data.sha256"),

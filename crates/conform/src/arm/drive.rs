@@ -15,6 +15,7 @@ use crate::arm::corrector::Corrector;
 use crate::arm::dry_friction::JointFriction;
 use crate::arm::input::input;
 use crate::arm::input_error;
+use crate::arm::live_input::ArmInput;
 use crate::arm::loads::LoadsNear;
 use crate::arm::parameters::ArmParameters;
 use crate::arm::robot_equations::RobotEquations;
@@ -22,6 +23,7 @@ use crate::arm::system::system;
 use crate::data::case::Case;
 use crate::data::condition::Condition;
 use crate::data::input::RunInput;
+use crate::data::live_input::LiveInput;
 use crate::data::part::Part;
 use crate::data::settings::{Equations, Method};
 use crate::data::setup::{Asked, Compensation, Drive, DryFriction, Near, Parameters, Setup};
@@ -49,6 +51,10 @@ impl Drive for Arm {
             Torque::Motor => warm,
             Torque::Link => warm + &json(self.robot.description()),
         }
+    }
+
+    fn live_input(&self, step: f64) -> Box<dyn LiveInput> {
+        Box::new(ArmInput::new(self, step))
     }
 
     fn parts(&self) -> &[Part] {
@@ -111,6 +117,11 @@ impl Drive for Arm {
         let correction = self.correction.as_ref();
         correction.is_some_and(|known| known.reference_temperatures.is_some())
             || self.robot.warms_by().contains(&WarmingBy::Temperature)
+    }
+
+    /// Limits and friction of the robot, and what its torques are.
+    fn reading(&self) -> String {
+        json(&(self.robot.description(), self.torque))
     }
 
     fn identity(&self) -> String {

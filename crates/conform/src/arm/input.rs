@@ -8,7 +8,7 @@ use reachtube_robot::Robot;
 use crate::data::input::RunInput;
 
 /// Accelerations are differences of velocities over at least this time to both sides, s.
-pub(crate) const SPAN: f64 = 0.02;
+pub(super) const SPAN: f64 = 0.02;
 
 /// Evaluates the input along a run, eq. (11) of the paper, and checks its units and times.
 ///

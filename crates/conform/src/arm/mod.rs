@@ -4,10 +4,12 @@
 pub(crate) mod arm;
 pub(crate) mod correction;
 mod corrector;
+mod delayed;
 mod drive;
 mod dry_friction;
-pub(crate) mod input;
+mod input;
 mod input_error;
+mod live_input;
 mod loads;
 mod parameters;
 mod quantity;

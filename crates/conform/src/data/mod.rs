@@ -6,6 +6,7 @@ pub(crate) mod envelope;
 pub(crate) mod fold;
 pub(crate) mod input;
 pub(crate) mod kept;
+pub(crate) mod live_input;
 pub(crate) mod marks;
 mod notes;
 pub(crate) mod notion;

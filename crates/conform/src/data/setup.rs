@@ -11,6 +11,7 @@ use reachtube_scalar::Interval;
 use crate::data::case::Case;
 use crate::data::condition::Condition;
 use crate::data::input::RunInput;
+use crate::data::live_input::LiveInput;
 use crate::data::notion::Notion;
 use crate::data::part::Part;
 use crate::data::settings::Settings;
@@ -59,6 +60,9 @@ pub(crate) trait Drive: Debug + Send + Sync {
     /// again.
     fn input_key(&self, at: Option<&Condition>) -> String;
 
+    /// Returns what evaluates the inputs of samples that are `step` \[s\] apart.
+    fn live_input(&self, step: f64) -> Box<dyn LiveInput>;
+
     /// Returns the parts of the system, whose states are looked at together.
     fn parts(&self) -> &[Part];
 
@@ -106,7 +110,10 @@ pub(crate) trait Drive: Debug + Send + Sync {
     /// Returns whether it depends on temperatures.
     fn needs_temperatures(&self) -> bool;
 
-    /// Returns a text that says all that the inputs and compensations depend on.
+    /// Returns a text that says all that the reading of recordings depends on.
+    fn reading(&self) -> String;
+
+    /// Returns a text that says all that inputs and compensations depend on.
     fn identity(&self) -> String;
 
     /// Refuses a fit of groups of parameters that cannot be fitted.

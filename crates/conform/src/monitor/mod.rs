@@ -1,11 +1,9 @@
 //! A monitor: samples one at a time, and at once what leaves the reachable set of a model.
 
 mod alarm;
-mod delayed;
 mod fault_watch;
 mod findings;
 mod healthy;
-mod input;
 mod learn;
 mod leave;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]

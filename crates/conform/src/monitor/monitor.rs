@@ -4,15 +4,16 @@ use reachtube_reach::{Propagation, TimeGrid};
 use reachtube_recordings::{EvenSamples, Sample, SampleError};
 use serde::Serialize;
 
+use crate::data::live_input::LiveInput;
+use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::model::file::Model;
 use crate::monitor::alarm::Alarm;
-use crate::monitor::delayed::Delayed;
 use crate::monitor::fault_watch::{FaultWatch, Task};
 use crate::monitor::healthy::HealthyMotion;
-use crate::monitor::input::InputOf;
 use crate::monitor::leave::Leave;
 use crate::monitor::nominal::LiveNominal;
+use crate::monitor::residual::Residual;
 use crate::monitor::schedule::Schedule;
 use crate::monitor::statistics::Shape;
 use crate::monitor::window::{Sets, Window};
@@ -67,8 +68,9 @@ const DRIFT_WEIGHT: f64 = 1.0 / 16.0;
 #[derive(Debug)]
 pub struct Monitor {
     even: EvenSamples,
-    delayed: Option<Delayed>,
+    input: Box<dyn LiveInput>,
     judge: Judge,
+    setup: Setup,
 }
 
 /// What judges samples at even times.
@@ -76,7 +78,6 @@ pub struct Monitor {
 struct Judge {
     sets: Sets,
     nominal: Option<LiveNominal>,
-    input: InputOf,
     /// Steps from the beginning of one window to the beginning of the next.
     every: u64,
     windows: Vec<Window>,
@@ -139,13 +140,12 @@ impl Monitor {
         let input_gains = settings.disturbance.input_gains(&propagation);
         let grid = Grid { times: Arc::new(times), propagation, input_gains };
         let sets = Sets::new(grid, model.sets(), settings.states.rows(2 * n));
-        let delayed = Delayed::new(setup.robot(), settings.torque, step);
+        let input = setup.drive.live_input(step);
         let windows = vec![Window::new(n); steps / every + 1];
         // Samples at even times that one sample may complete.
         let at_once = (schedule.longest_gap / step).ceil() as usize + 1;
         let mut judge = Judge {
             nominal: LiveNominal::new(&setup, system, step)?,
-            input: InputOf::new(setup.robot(), settings.torque),
             every: every as u64,
             windows,
             count: 0,
@@ -157,7 +157,7 @@ impl Monitor {
             sets,
         };
         judge.leaves.reserve(at_once * judge.most_at_once());
-        Ok(Self { even: EvenSamples::new(n, step, schedule.longest_gap), delayed, judge })
+        Ok(Self { even: EvenSamples::new(n, step, schedule.longest_gap), input, judge, setup })
     }
 
     /// Takes a sample: its time \[s\], positions, velocities and torques (n each; rad, rad/s, N m,
@@ -175,19 +175,12 @@ impl Monitor {
         torque: &[f64],
     ) -> Result<&[Leave], SampleError> {
         self.even.take(time, [q, qd, torque])?;
-        let Self { even, delayed, judge } = self;
+        let Self { even, input, judge, .. } = self;
         judge.leaves.clear();
         judge.alarms.clear();
         while let Some(sample) = even.next() {
-            match delayed {
-                None => judge.take(sample),
-                Some(delayed) => {
-                    delayed.take(sample);
-                    while let Some(sample) = delayed.next(false) {
-                        judge.take(sample);
-                    }
-                }
-            }
+            input.take(sample);
+            while input.next(false, &mut |sample, u| judge.take(sample, u)) {}
         }
         Ok(&self.judge.leaves)
     }
@@ -195,17 +188,13 @@ impl Monitor {
     /// Judges the samples that wait for later ones, as at the end of a recording, and begins anew:
     /// the next sample may have any time. The totals stay.
     pub fn finish(&mut self) -> &[Leave] {
-        let Self { even, delayed, judge } = self;
+        let Self { even, input, judge, .. } = self;
         judge.leaves.clear();
         judge.alarms.clear();
-        if let Some(delayed) = delayed {
-            judge.leaves.reserve(delayed.waiting() * judge.most_at_once());
-            judge.alarms.reserve(delayed.waiting() * (2 * judge.before.len() + 1));
-            while let Some(sample) = delayed.next(true) {
-                judge.take(sample);
-            }
-            delayed.clear();
-        }
+        judge.leaves.reserve(input.waiting() * judge.most_at_once());
+        judge.alarms.reserve(input.waiting() * (2 * judge.before.len() + 1));
+        while input.next(true, &mut |sample, u| judge.take(sample, u)) {}
+        input.clear();
         even.clear();
         judge.count = 0;
         judge.faults.iter_mut().for_each(FaultWatch::clear);
@@ -245,7 +234,7 @@ impl Monitor {
 
     fn begin_task(&mut self, shape: Shape, task: Task) -> Result<()> {
         let step = self.step();
-        let residual = self.judge.input.residual(step)?;
+        let residual = Residual::new(self.setup.robot(), self.setup.settings.torque, step)?;
         self.judge.faults = Some(FaultWatch::new(residual, shape, step, task));
         Ok(())
     }
@@ -291,7 +280,7 @@ impl Monitor {
     /// of later samples, from which the motors' inertia is computed.
     #[must_use]
     pub fn delay(&self) -> f64 {
-        self.delayed.as_ref().map_or(0.0, Delayed::delay)
+        self.input.delay()
     }
 
     /// Returns the time from the beginning of one window to the beginning of the next, s.
@@ -314,7 +303,8 @@ impl Judge {
         self.sets.rows * self.windows.len()
     }
 
-    fn take(&mut self, sample: &Sample) {
+    /// Judges a sample whose input is `u` (m).
+    fn take(&mut self, sample: &Sample, u: &[f64]) {
         let Self { sets, nominal, windows, before, leaves, progress, .. } = self;
         for window in windows.iter_mut() {
             window.advance(sets, nominal.as_mut(), before);
@@ -338,7 +328,7 @@ impl Judge {
                 window.sample = None;
             }
         }
-        self.input.evaluate(sample, &mut self.before);
+        self.before.copy_from_slice(u);
         if let Some(faults) = &mut self.faults {
             let Self { alarms, before, progress, .. } = self;
             faults.take(sample, before, |alarm| {

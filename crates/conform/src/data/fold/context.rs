@@ -40,7 +40,7 @@ impl Context {
         let is_own = settings.nominal == NominalStart::Own
             || setup.condition.is_none() && setup.differs_by_run();
         let options = read_options(setup);
-        let parts = (drive.identity(), settings.until, is_own);
+        let parts = (drive.reading(), settings.until, is_own);
         let mut text = serde_json::to_string(&parts).expect("settings have string keys");
         text += &format!("{:?}", options.gap_limit);
         let digest = Sha256::digest(text).into();

@@ -10,7 +10,7 @@ use crate::arm::input::SPAN;
 /// Holds samples back until the velocities after them are known, and adds J q̈ to the input from
 /// torques that were measured behind the gear.
 #[derive(Debug, Clone)]
-pub(crate) struct Delayed {
+pub(super) struct Delayed {
     inertia: Vec<f64>,
     step: f64,
     /// The samples around the one that is due.
@@ -25,7 +25,7 @@ pub(crate) struct Delayed {
 
 impl Delayed {
     /// Returns `None` if the recorded torques contain the motors' inertia.
-    pub(crate) fn new(robot: &Robot, torque: Torque, step: f64) -> Option<Self> {
+    pub(super) fn new(robot: &Robot, torque: Torque, step: f64) -> Option<Self> {
         let inertia: Vec<f64> = robot.joints().iter().map(|joint| joint.armature).collect();
         if torque != Torque::Link || inertia.iter().all(|inertia| *inertia == 0.0) {
             return None;
@@ -38,23 +38,23 @@ impl Delayed {
     }
 
     /// Returns the time by which answers are late, s.
-    pub(crate) fn delay(&self) -> f64 {
+    pub(super) fn delay(&self) -> f64 {
         (SPAN / self.step).ceil() * self.step
     }
 
     /// Returns the number of samples that wait for later ones.
-    pub(crate) fn waiting(&self) -> usize {
+    pub(super) fn waiting(&self) -> usize {
         (self.taken - self.due) as usize
     }
 
     /// Forgets all samples.
-    pub(crate) fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.spare.extend(self.held.drain(..));
         (self.due, self.taken) = (0, 0);
     }
 
     /// Takes the next sample.
-    pub(crate) fn take(&mut self, sample: &Sample) {
+    pub(super) fn take(&mut self, sample: &Sample) {
         if let Some(mut own) = self.spare.pop().or_else(|| self.held.pop_front()) {
             own.copy(sample);
             self.held.push_back(own);
@@ -64,7 +64,7 @@ impl Delayed {
 
     /// Returns the sample that is due with its torques, if those after it are known or, where
     /// `is_over`, there is none.
-    pub(crate) fn next(&mut self, is_over: bool) -> Option<&Sample> {
+    pub(super) fn next(&mut self, is_over: bool) -> Option<&Sample> {
         let time = |k: u64| k as f64 * self.step;
         let last = self.taken.checked_sub(1).filter(|last| self.due <= *last)?;
         let mut after = self.due;
