@@ -9,7 +9,6 @@ use crate::error::Result;
 use crate::model::file::Model;
 use crate::model::provenance::Provenance;
 use crate::next_motion::growth::Growth;
-use crate::next_motion::rates::Rates;
 use crate::next_motion::trust::Trust;
 use crate::plausibility::friction_warning;
 use crate::result::code::Code;
@@ -35,9 +34,6 @@ pub struct Check {
     pub verdict: Verdict,
     /// Result of the check about the next motion; `None` if a recording was used in the fit.
     pub trust: Option<Trust>,
-    /// How often the recordings leave the set, with their spread over motions; `None` if a
-    /// recording was used in the fit.
-    pub rates: Option<Rates>,
     /// For each state in which a recording leaves the set, the value that leaves it furthest, among
     /// states that have a reachable set.
     pub worst_by_state: Vec<Witness>,
@@ -97,7 +93,6 @@ impl Check {
         };
         let is_held_out = is_used == Some(false);
         let trust = is_held_out.then(|| Trust::of_check(recordings, &verdict));
-        let rates = is_held_out.then(|| Rates::new(recordings, &verdict));
         let mut noted: Vec<Finding> =
             recordings.notes.iter().map(|note| findings::note(note)).collect();
         noted.extend(findings::at_rest(recordings));
@@ -111,7 +106,6 @@ impl Check {
             notes: noted.iter().map(|finding| finding.text.clone()).collect(),
             verdict,
             trust,
-            rates,
             worst_by_state: Vec::new(),
             growth: None,
             provenance,
@@ -143,7 +137,6 @@ impl Check {
             Some(held_out) => findings::next_motion(held_out, set, "left it"),
             None => findings::fitted_to_these(),
         });
-        findings.extend(self.rates.as_ref().map(findings::held_out_rates));
         findings.extend(findings::reach_of_proof(verdict, model.settings.states));
         let is_noted =
             |found: &Finding| Code::of(&found.code).is_some_and(|code| NOTED.contains(&code));

@@ -13,7 +13,6 @@ use crate::error::Result;
 use crate::next_motion::allowance::AllowanceNeeded;
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::{Calibration, calibrate, not_smallest};
-use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
@@ -74,8 +73,6 @@ pub struct Conformance {
     pub allowance: Vec<f64>,
     /// The dry friction that U was widened for, joint by joint; empty without the setting.
     pub stiction: Vec<Stiction>,
-    /// The runs that decide the sets.
-    pub deciding_runs: DecidingRuns,
     /// The joints whose motion follows the order of the runs.
     pub trends: Vec<Trend>,
     /// The search for the sets of a model that is not linear.
@@ -185,7 +182,6 @@ fn judged(
         false => Trust::with_allowance(problem.recordings()),
     };
     let is_as_found = calibration.is_none() && allowance.is_empty();
-    let is_smallest = is_as_found && !problem.settings().notion.asks_points();
     Ok(Conformance {
         sets: tube.sets.clone(),
         warnings,
@@ -199,7 +195,6 @@ fn judged(
         hull_volume,
         trust,
         verdict,
-        deciding_runs: DecidingRuns::new(problem, &tight, is_smallest.then_some(cost))?,
         trends: trends(problem),
         calibration,
         left_out,

@@ -42,7 +42,7 @@ pub(super) fn sum_unit(model: &Model) -> String {
 
 /// Returns the tables of the shares of the joints, of the runs that decide, and of the motions.
 pub(super) fn cost_tables(model: &Model, figures: &[SuiteFigure]) -> Vec<TextTable> {
-    let tables = [by_joint(model, figures), by_run(model, figures), by_motion(model)];
+    let tables = [by_joint(model, figures), by_run(figures), by_motion(model)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
 
@@ -120,7 +120,7 @@ fn widths(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {
 }
 
 /// Returns the runs that decide the most rows.
-fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
+fn by_run(figures: &[SuiteFigure]) -> TextTable {
     let runs = figures.iter().flat_map(|figure| figure.runs.iter().map(move |run| (figure, run)));
     let mut runs: Vec<_> = runs.filter(|(_, run)| run.touches > 0).collect();
     runs.sort_by_key(|(_, run)| std::cmp::Reverse(run.touches));
@@ -135,18 +135,8 @@ fn by_run(model: &Model, figures: &[SuiteFigure]) -> TextTable {
             degrees(run.temperature),
         ]
     };
-    let without = model.deciding_runs.cost_without.zip(model.cost);
-    let without = without.map_or_else(String::new, |(without, cost)| {
-        format!(
-            "; without the first {} the sets would cost about {} instead of {} {}",
-            model.deciding_runs.most.len(),
-            four_decimals(without),
-            four_decimals(cost),
-            cost_unit(model)
-        )
-    });
     let mut table = TextTable {
-        title: format!("Runs that decide the most rows{without}"),
+        title: "Runs that decide the most rows".into(),
         header: ["Run", "Suite", "Rows", "Order", "Temperature"].map(String::from).to_vec(),
         rows: runs.iter().take(MOST_ROWS).map(row).collect(),
     };

@@ -1,4 +1,4 @@
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use reachtube_conform::{Answer, Check, Silent};
 use reachtube_finding::Finding;
@@ -12,6 +12,9 @@ use crate::windows::Prepared;
 
 /// Windows on a page, besides the deciding ones.
 const MOST_SHOWN: usize = 12;
+
+/// Windows on a page that decide the sets.
+const MOST_DECIDING: usize = 10;
 
 /// A model beside motions that were held out from every choice.
 #[derive(Debug, Clone, Serialize)]
@@ -57,12 +60,20 @@ impl Compared {
         are_whole: bool,
     ) -> Result<Self> {
         let (held_out, outside) = HeldOut::new(answer, held_back, horizon, are_whole)?;
-        let deciding = &answer.model.deciding_runs.most;
-        let deciding = deciding.iter().map(|run| run.file.clone()).collect();
+        let deciding = most_deciding(answer);
         let shown = some_windows(recordings, horizon, &deciding)?;
         let shown_held_out = some_windows(held_back, horizon, &outside)?;
         Ok(Self { held_out, shown, shown_held_out })
     }
+}
+
+/// Returns the ten windows that decide the most rows.
+fn most_deciding(answer: &Answer) -> BTreeSet<String> {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    answer.found.tight.iter().for_each(|place| *counts.entry(&place.run).or_insert(0) += 1);
+    let mut most: Vec<(&str, usize)> = counts.into_iter().collect();
+    most.sort_by_key(|(_, values)| std::cmp::Reverse(*values));
+    most.into_iter().take(MOST_DECIDING).map(|(file, _)| file.into()).collect()
 }
 
 impl HeldOut {

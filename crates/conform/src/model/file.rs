@@ -26,7 +26,6 @@ use crate::fit::record::FitRecord;
 use crate::model::records::DataRecord;
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::Calibration;
-use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
@@ -128,9 +127,6 @@ pub struct Model {
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
-    /// The runs that decide the sets.
-    #[serde(default)]
-    pub deciding_runs: DecidingRuns,
     /// The joints whose motion follows the order of the runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trends: Vec<Trend>,
@@ -209,7 +205,6 @@ impl Model {
             allowance: found.allowance.clone(),
             stiction: found.stiction.clone(),
             left_out: found.left_out.clone(),
-            deciding_runs: found.deciding_runs.clone(),
             trends: found.trends.clone(),
             tight: found.tight.iter().take(MOST_TIGHT).cloned().collect(),
             settings: settings.clone(),

@@ -79,10 +79,7 @@ impl Model {
         let of_suites = data.suites.iter().filter(|suite| own_names.contains(suite.name.as_str()));
         let added = of_suites.flat_map(|suite| &suite.runs).filter(is_new).count();
         let named = missing.iter().chain(replaced.iter().map(|run| &run.file));
-        let decides = |file: &&String| {
-            self.deciding_runs.most.iter().any(|run| run.file == **file)
-                || self.tight.iter().any(|place| place.run == **file)
-        };
+        let decides = |file: &&String| self.tight.iter().any(|place| place.run == **file);
         let deciding = named.filter(decides).cloned().collect();
         let starts_alike = !shares_any && self.starts_alike(problem);
         Some(OtherData { missing, replaced, deciding, added, shares_any, starts_alike })

@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
-use std::sync::Arc;
 
 use crate::data::envelope::Envelope;
 use crate::error::Result;
@@ -79,21 +78,6 @@ impl Program<'_> {
         let others = program.blocks.iter_mut().enumerate().filter(|(block, _)| !keep(*block));
         others.for_each(|(_, block)| block.envelope = Envelope::new(states));
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
-        program
-    }
-
-    /// Returns the program with every `stride`-th sample of its blocks alone, at the same cost of
-    /// each radius. Its deviations are to be given anew.
-    #[must_use]
-    pub(crate) fn with_every(&self, stride: usize) -> Self {
-        let mut program = self.clone();
-        for (block, parts) in program.blocks.iter_mut().zip(&mut program.parts) {
-            block.times = block.times.iter().copied().step_by(stride).collect();
-            *parts = parts.iter().copied().step_by(stride).collect();
-            let samples = block.coefficients.chunks_exact(self.shape.entries()).step_by(stride);
-            block.coefficients = Arc::new(samples.flatten().copied().collect());
-            block.envelope = Envelope::new(self.shape.states);
-        }
         program
     }
 
@@ -181,6 +165,8 @@ impl Program<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use reachtube_reach::Hyperrectangle;
     use reachtube_recordings::Torque;
 

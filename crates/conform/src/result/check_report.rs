@@ -34,7 +34,6 @@ impl Check {
             &[Code::SetLost] as &[_],
             &[Code::GrowthNeeded],
             &[Code::NextMotion, Code::NoGuarantee],
-            &[Code::HeldOutRates],
             &[Code::OtherRecordings],
         ];
         let others = others.map(|codes| Section { findings: of(codes), ..Section::default() });

@@ -73,8 +73,6 @@ reachtube_finding::codes! {
         NoGuarantee = "no-guarantee",
         /// The sets without each motion.
         LeftOut = "left-out",
-        /// The runs that decide the sets.
-        DecidingRuns = "deciding-runs",
         /// Joints follow the order of the runs.
         RobotChanged = "robot-changed",
         /// What would have to grow to enclose the recordings.

@@ -11,20 +11,18 @@ use reachtube_finding::{Section, Table};
 /// Largest number of motions in the table.
 const MOST_MOTIONS: usize = 12;
 
-/// Returns the sets without each motion, the runs that decide, and trends over the runs.
-pub(super) fn dependence(model: &Model) -> [Section; 3] {
+/// Returns the sets without each motion, and trends over the runs.
+pub(super) fn dependence(model: &Model) -> [Section; 2] {
     let mut left_out = Section::default();
     left_out.findings.extend(findings::left_out(model));
     left_out.tables.extend((!model.left_out.is_empty()).then(|| table_of_left_out(model)));
-    let mut runs = Section::default();
-    runs.findings.extend(findings::deciding_runs(&model.deciding_runs, model.data.run_count()));
     let mut changed = Section::default();
     changed.findings.extend(findings::robot_changed(&model.trends));
     for of_suite in model.trends.chunk_by(|a, b| a.suite == b.suite) {
         let (name, value) = trend(model, of_suite);
         changed.fact(name, value);
     }
-    [left_out, runs, changed]
+    [left_out, changed]
 }
 
 /// Returns the table of the sets without each motion, the motions that need the most growth first.

@@ -136,14 +136,9 @@ fn a_calibrated_model_is_read_again_and_bounds_other_recordings_as_any_model() {
     let held_out = check_of(&folder, &model, &["d"]);
     let trust = held_out.trust.unwrap();
     assert!(trust.basis.starts_with("hold-out bound") && trust.average_probability.is_none());
-    let rates = held_out.rates.unwrap();
-    assert_eq!((rates.motions, rates.rows.of, rates.suites.of), (1, 160, 1));
-    let finding = held_out.findings.iter().find(|found| found.code == Code::HeldOutRates).unwrap();
-    assert_eq!((finding.numbers["motions"], finding.numbers["rows"]), (1.0, 160.0));
-    assert!(finding.text.contains("1 motion is too few"), "{finding}");
     // The motion that calibrated the sets is no other one.
     let known = check_of(&folder, &model, &["c"]);
-    assert!(known.trust.is_none() && known.rates.is_none() && known.verdict.conformant);
+    assert!(known.trust.is_none() && known.verdict.conformant);
 }
 
 #[test]
@@ -376,22 +371,4 @@ fn a_joint_that_follows_the_order_of_the_runs_is_named() {
     assert!(trend.correlation > 0.999 && (trend.range - 0.11 * 0.98).abs() < 1e-9, "{trend:?}");
     let mixed = [0.0, 0.09, 0.03, 0.06, 0.01, 0.11, 0.04, 0.08, 0.02, 0.1, 0.05, 0.07];
     assert!(conform_all(&drifting(&mixed)).trends.is_empty());
-}
-
-#[test]
-fn the_cost_without_the_runs_that_decide_is_about_that_of_the_others() {
-    // One run of many is far out.
-    let mut torques = [0.01, -0.01].repeat(12);
-    torques[5] = 0.08;
-    let found = conform_all(&drifting(&torques));
-    let runs = &found.deciding_runs;
-    assert!(runs.most.iter().any(|run| run.file == "run5") && runs.count <= 24, "{runs:?}");
-    let others: Vec<f64> = (0..24)
-        .filter(|run| !runs.most.iter().any(|most| most.file == format!("run{run}")))
-        .map(|run| torques[run])
-        .collect();
-    let alone = conform_all(&drifting(&others)).cost;
-    let without = runs.cost_without.unwrap();
-    assert!(found.cost > 2.0 * alone, "{} {alone}", found.cost);
-    assert!((without / alone - 1.0).abs() < 0.1, "{without} {alone}");
 }

@@ -1,9 +1,8 @@
 //! How far the sets depend on single motions and runs.
 
-use reachtube_scalar::number::{at_least, counted, four_decimals, plural};
+use reachtube_scalar::number::{at_least, plural};
 
 use crate::model::file::Model;
-use crate::next_motion::deciding_runs::DecidingRuns;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::without_motion::LeftOut;
 use crate::result::code::Code;
@@ -62,40 +61,6 @@ pub(crate) fn left_out(model: &Model) -> Option<Finding> {
                 .with("input_growth", number(&left.input_gauge))
         }
     })
-}
-
-/// The runs that decide the sets, and what they cost; `None` if none does.
-pub(crate) fn deciding_runs(runs: &DecidingRuns, all: usize) -> Option<Finding> {
-    let first = runs.most.first()?;
-    let mut text = format!(
-        "{} of {all} {} the sets, most of all {} with {}",
-        runs.count,
-        match (all, runs.count) {
-            (1, _) => "run decides",
-            (_, 1) => "runs decides",
-            _ => "runs decide",
-        },
-        first.file,
-        counted(first.values, "value"),
-    );
-    if let Some(cost) = runs.cost_without {
-        let named = match runs.most.len() {
-            1 => "one that decides".into(),
-            named => format!("{named} that decide"),
-        };
-        text += &format!(
-            "; without the {named} most the sets would cost about {} (estimated from at most \
-             64 samples of each run)",
-            four_decimals(cost)
-        );
-    }
-    let finding = Finding::new(Severity::Info, Code::DecidingRuns, text + ".");
-    Some(
-        finding
-            .at(&first.file)
-            .with("runs", runs.count as f64)
-            .with("cost_without", runs.cost_without.unwrap_or(f64::NAN)),
-    )
 }
 
 /// Finding that the robot changed while it was recorded; `None` if it did not.

@@ -17,12 +17,11 @@ pub(super) mod words;
 pub(crate) use check::{
     at_rest, growth_needed, least_growth, note, other_recordings, other_start, use_unknown,
 };
-pub(crate) use dependence::{deciding_runs, left_out, robot_changed};
+pub(crate) use dependence::{left_out, robot_changed};
 pub(crate) use fit::{any_run, fitted, parameters_moved};
 pub(crate) use limits::{beyond_recordings, reach_of_proof};
 pub(crate) use new_motions::{
-    calibrated, fitted_to_these, held_out_rates, next_motion, next_motion_in_brief,
-    next_motion_of_fit,
+    calibrated, fitted_to_these, next_motion, next_motion_in_brief, next_motion_of_fit,
 };
 pub(crate) use sets::touching;
 pub(crate) use vacuous::{vacuous, vacuous_in_brief};

@@ -4,7 +4,6 @@ use reachtube_scalar::number::{at_least, counted, plural};
 
 use crate::model::file::Model;
 use crate::next_motion::calibration::{Calibration, Gauge};
-use crate::next_motion::rates::{FEWEST_MOTIONS, Rate, Rates};
 use crate::next_motion::trust::{Trust, TrustKind};
 use crate::result::code::Code;
 use crate::result::findings::words::listed;
@@ -143,43 +142,6 @@ pub(crate) fn next_motion_in_brief(trust: &Trust, role: &str) -> String {
 pub(crate) fn fitted_to_these() -> Finding {
     let text = "No guarantee for new motions: the model was fitted to some of these recordings.";
     Finding::new(Severity::Info, Code::NoGuarantee, text)
-}
-
-/// How often held-out recordings leave the sets.
-pub(crate) fn held_out_rates(rates: &Rates) -> Finding {
-    let percent = |part: f64| format!("{:.1}", 100.0 * part);
-    let rate = |rate: &Rate| {
-        let part = percent(rate.outside as f64 / rate.of.max(1) as f64);
-        match rate.interval {
-            Some([low, high]) => format!("{part} % ({} to {} %)", percent(low), percent(high)),
-            None => format!("{part} %"),
-        }
-    };
-    let intervals = if rates.motions < FEWEST_MOTIONS {
-        let are = if rates.motions == 1 { "is" } else { "are" };
-        format!("There is no interval: {} {are} too few.", counted(rates.motions, "motion"))
-    } else if rates.rows.interval.is_none() {
-        "There is no interval, because there is no spread.".into()
-    } else {
-        format!(
-            "In brackets is the spread over {} motions ({:.0} % cluster bootstrap).",
-            rates.motions,
-            100.0 * rates.level
-        )
-    };
-    let text = format!(
-        "Held out: {} of the rows and {} of {} outside. {intervals} The rates describe these \
-         recordings and are no guarantee for others.",
-        rate(&rates.rows),
-        rate(&rates.suites),
-        counted(rates.suites.of, "suite"),
-    );
-    Finding::new(Severity::Info, Code::HeldOutRates, text)
-        .with("rows", rates.rows.of as f64)
-        .with("rows_outside", rates.rows.outside as f64)
-        .with("suites", rates.suites.of as f64)
-        .with("suites_outside", rates.suites.outside as f64)
-        .with("motions", rates.motions as f64)
 }
 
 /// What the basis of a fitted nominal model says about settings in files of earlier versions.
