@@ -63,13 +63,6 @@ pub(crate) fn seven_joints() -> Robot {
     Robot::from_toml(SEVEN_JOINTS, "seven joints").unwrap()
 }
 
-/// Returns the arm of seven joints without its motors. The inertia of its last joint is a
-/// thousandth of the first one's, so its mass matrix changes by a multiple over small boxes.
-pub(crate) fn light_wrist() -> Robot {
-    let lines = SEVEN_JOINTS.lines().filter(|line| !line.contains("armature"));
-    Robot::from_toml(&lines.collect::<Vec<_>>().join("\n"), "light wrist").unwrap()
-}
-
 const SEVEN_JOINTS: &str = r#"
     schema_version = 1
     name = "seven joints"

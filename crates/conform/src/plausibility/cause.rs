@@ -5,8 +5,10 @@ use reachtube_recordings::Torque;
 pub(crate) enum Cause {
     /// The recordings mean something else than was stated.
     Reading {
-        /// What they mean.
-        reading: Reading,
+        /// What they mean, as a clause.
+        clause: String,
+        /// The kind of the torques, if that was stated wrongly.
+        kind: Option<Torque>,
         /// The part that the recorded motion does not explain under this reading.
         unexplained: f64,
         /// The part that it does not explain as stated.
@@ -60,29 +62,4 @@ pub(crate) enum Cause {
         /// The end of the longest recording, s.
         longest: f64,
     },
-}
-
-/// What recordings may mean instead of what was stated.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Reading {
-    /// As stated.
-    Stated,
-    /// The torques are in units of this many N m.
-    TorqueUnit(f64),
-    /// The torques have the opposite sign.
-    OppositeSigns,
-    /// The torques are of another kind.
-    Kind(Torque),
-    /// The steps of dry friction are missing from motor torques.
-    Filtered,
-    /// The times are in ms.
-    Milliseconds,
-    /// Positions and velocities are in degrees.
-    Degrees,
-    /// The torques are later than the motion by this time, s.
-    Lag(f64),
-    /// The torque of one joint, from 1, has the opposite sign.
-    OppositeSign(usize),
-    /// The torques of two joints, from 1, are swapped.
-    Swapped(usize, usize),
 }

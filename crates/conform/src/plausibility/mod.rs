@@ -3,7 +3,6 @@
 
 pub(crate) mod cause;
 mod causes;
-mod evidence;
 mod friction;
 mod nominal_fit;
 mod usefulness;

@@ -133,8 +133,12 @@ fn the_cause_of_a_wrong_reading_is_named() {
         (Written { torque: -1.0, ..RIGHT }, Torque::Motor, "the opposite sign"),
         (RIGHT, Torque::Compensated, "--torque motor"),
         (Written { angle: 180.0 / std::f64::consts::PI, ..RIGHT }, Torque::Motor, "in degrees"),
-        (Written { late: 25, ..RIGHT }, Torque::Motor, "about 0.1 s later"),
-        (Written { swapped: Some((1, 2)), ..RIGHT }, Torque::Motor, "joints 2 and 3 are swapped"),
+        (Written { late: 25, ..RIGHT }, Torque::Motor, "lags the motion by 100 ms"),
+        (
+            Written { swapped: Some((1, 2)), ..RIGHT },
+            Torque::Motor,
+            "joint2 and joint3 are swapped",
+        ),
     ];
     for (written, torque, words) in wrong {
         let (problem, found) = found(&written, Settings::new(torque, JOINTS));

@@ -4,8 +4,8 @@ use crate::bodies::{BodyProgram, RisingFriction};
 use crate::regression::singular::Singular;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
-use reachtube_robot::Robot;
 use reachtube_robot::friction::Viscous;
+use reachtube_robot::{Parameter, ParameterKind, Robot};
 use serde::Serialize;
 
 /// Weight of the prior of friction that must rise, in squared standard deviations: rounding only.
@@ -52,12 +52,106 @@ impl FallingFriction {
     }
 }
 
+/// The columns of viscous friction in a regression, which must rise with speed.
+pub(crate) struct ViscousColumns<'a> {
+    /// The joints whose friction is fitted.
+    pub joints: Vec<JointColumns>,
+    /// The rows of the fit.
+    pub data: &'a TriangularFactor,
+}
+
+/// The columns of the viscous friction of a joint.
+pub(crate) struct JointColumns {
+    /// The joint's place among the residuals, and its name.
+    pub joint: (usize, String),
+    /// The columns of v1, v2 and v3.
+    pub columns: [Option<usize>; 3],
+    /// What is added to their values.
+    pub known: [f64; 3],
+    /// Speed up to which the friction must rise \[rad/s\].
+    pub limit: f64,
+}
+
+impl JointColumns {
+    /// Returns the condition on the friction, which is `x` by least squares.
+    fn condition(&self, x: &DVector<f64>, data: &TriangularFactor) -> RisingFriction {
+        let condition = |own| rising(self.columns, self.known, own, self.limit, data);
+        condition(condition(self.known).viscous(x.as_slice()))
+    }
+}
+
+impl<'a> ViscousColumns<'a> {
+    /// Takes the friction columns of a fit that corrects the friction of a known robot.
+    pub(crate) fn of_robot(
+        known: &Robot,
+        columns: &[Parameter],
+        limits: &[f64],
+        data: &'a TriangularFactor,
+    ) -> Self {
+        let of_joint = |(joint, limit): (usize, &f64)| {
+            let place = |kind| columns.iter().position(|own| *own == Parameter { joint, kind });
+            let viscous = &known.joints()[joint].friction.viscous;
+            JointColumns {
+                joint: (joint, known.joints()[joint].name.clone()),
+                columns: [
+                    ParameterKind::Viscous1,
+                    ParameterKind::Viscous2,
+                    ParameterKind::Viscous3,
+                ]
+                .map(place),
+                known: [viscous.v1, viscous.v2, viscous.v3],
+                limit: *limit,
+            }
+        };
+        let joints = limits.iter().enumerate().map(of_joint);
+        Self { joints: joints.filter(|own| own.columns[0].is_some()).collect(), data }
+    }
+
+    /// Solves anew under conditions on the friction of joints whose friction falls in `x`, until
+    /// none does. Returns the friction that was replaced; `sizes` are the root mean squares of the
+    /// joints' residuals.
+    pub(crate) fn rise<E>(
+        &self,
+        x: &mut DVector<f64>,
+        solve: impl Fn(&[RisingFriction]) -> Result<DVector<f64>, E>,
+        sizes: impl Fn(&DVector<f64>) -> Vec<f64>,
+    ) -> Result<Vec<FallingFriction>, E> {
+        let (plain, mut replaced): (_, Vec<(&JointColumns, f64)>) = (x.clone(), Vec::new());
+        loop {
+            let falls = |own: &&JointColumns| {
+                let viscous = own.condition(x, self.data).viscous(x.as_slice());
+                FallingFriction::speed(viscous, own.limit)
+            };
+            let is_new = |own: &&JointColumns| {
+                replaced.iter().all(|(known, _)| known.joint.0 != own.joint.0)
+            };
+            let new = self.joints.iter().filter(is_new);
+            let new: Vec<_> = new.filter_map(|own| Some((own, falls(&own)?))).collect();
+            if new.is_empty() {
+                break;
+            }
+            replaced.extend(new);
+            let conditions = replaced.iter().map(|(own, _)| own.condition(&plain, self.data));
+            *x = solve(&conditions.collect::<Vec<_>>())?;
+        }
+        let [before, after] = [&plain, x].map(sizes);
+        let described = replaced.into_iter().map(|(own, falls_beyond)| FallingFriction {
+            joint: own.joint.1.clone(),
+            viscous: own.condition(&plain, self.data).viscous(plain.as_slice()),
+            falls_beyond,
+            limit: own.limit,
+            residuals: [before[own.joint.0], after[own.joint.0]],
+        });
+        Ok(described.collect())
+    }
+}
+
 /// Returns the condition on viscous friction with coefficients `viscous` by least squares of the
 /// rows `data`.
 ///
 /// Slow motions hardly show v3, and least squares may then give it any value. Friction that alone
 /// would make up all of the torque is as large as friction counts.
-pub(crate) fn rising(
+fn rising(
     columns: [Option<usize>; 3],
     known: [f64; 3],
     viscous: [f64; 3],

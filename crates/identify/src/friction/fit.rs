@@ -1,4 +1,5 @@
-use crate::friction::falling::{FallingFriction, nearest, rising};
+use crate::bodies::RisingFriction;
+use crate::friction::falling::{FallingFriction, JointColumns, ViscousColumns, nearest};
 use crate::friction::form::CoulombForm;
 use crate::friction::sample::{FrictionSample, quadrant_counts};
 use crate::regression::residuals::{
@@ -10,6 +11,7 @@ use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::DVector;
 use reachtube_robot::{FrictionDescription, Robot};
 use serde::Serialize;
+use std::convert::Infallible;
 
 /// Rounds of reweighting.
 const ROUNDS: usize = 4;
@@ -127,15 +129,17 @@ fn rise(
     limit: f64,
     x: &mut DVector<f64>,
 ) -> Option<FallingFriction> {
-    let viscous = form.description(x.as_slice()).viscous;
-    let falls_beyond = FallingFriction::speed(viscous, limit)?;
-    let size = |x: &DVector<f64>| root_mean_square(residuals(form, samples, x).into_iter());
-    let plain = size(x);
+    let sizes = |x: &DVector<f64>| vec![root_mean_square(residuals(form, samples, x).into_iter())];
+    let deviation = sizes(x)[0].max(f64::MIN_POSITIVE);
     let factor = weighted_factor(form, samples, weights);
-    let condition = rising(form.viscous().map(Some), [0.0; 3], viscous, limit, &factor);
-    *x = nearest(&factor, plain.max(f64::MIN_POSITIVE), &[condition]);
-    let residuals = [plain, size(x)];
-    Some(FallingFriction { joint: name.into(), viscous, falls_beyond, limit, residuals })
+    let joint = (0, name.into());
+    let own = JointColumns { joint, columns: form.viscous().map(Some), known: [0.0; 3], limit };
+    let columns = ViscousColumns { joints: vec![own], data: &factor };
+    let solve = |conditions: &[RisingFriction]| {
+        Ok::<_, Infallible>(nearest(&factor, deviation, conditions))
+    };
+    let Ok(mut replaced) = columns.rise(x, solve, sizes);
+    replaced.pop()
 }
 
 /// Returns the solution by iteratively reweighted least squares, and the factors of the rows.

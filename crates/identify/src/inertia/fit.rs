@@ -1,11 +1,10 @@
 use crate::bodies::RisingFriction;
 use crate::error::{Error, Result};
 use crate::fit::{Fit, JointFit};
-use crate::friction::falling::{FallingFriction, nearest};
+use crate::friction::falling::{FallingFriction, ViscousColumns, nearest};
 use crate::inertia::base::{BaseParameter, base_parameters};
 use crate::inertia::columns::{FrictionColumns, fitted_columns};
 use crate::inertia::diagonal::JointInertia;
-use crate::inertia::falling::ViscousColumns;
 use crate::inertia::physical::{PhysicalFit, nearest_bodies, residual_sizes, why_impossible};
 use crate::inertia::reference::reference_factor;
 use crate::prepare::log::PreparedLog;
@@ -91,10 +90,10 @@ pub(crate) fn fit_inertia(
     // Behind the gears, wrists have almost no inertia, and least squares often a negative one.
     let has_bodies = model.physical.unwrap_or(has_bodies || !model.motor_inertia);
     let limits = sampling.velocity_limits(robot);
-    let data = &fit.whitened;
-    let viscous = ViscousColumns { known, columns: &columns, limits: &limits, data };
-    let physical =
-        has_bodies.then(|| nearest_bodies(robot, &viscous, &fit, &moving, model)).transpose()?;
+    let viscous = ViscousColumns::of_robot(known, &columns, &limits, &fit.whitened);
+    let physical = has_bodies
+        .then(|| nearest_bodies([robot, known], &viscous, &fit, &moving, model))
+        .transpose()?;
     let (values, physical, falling, impossible) = match physical {
         Some((values, physical, falling)) => (values, Some(physical), falling, None),
         None => {

@@ -4,7 +4,6 @@ pub(crate) mod base;
 pub(crate) mod columns;
 pub(crate) mod description;
 pub(crate) mod diagonal;
-mod falling;
 pub(crate) mod fit;
 pub(crate) mod physical;
 mod prior;

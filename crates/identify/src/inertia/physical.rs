@@ -2,9 +2,8 @@ use crate::bodies::RisingFriction;
 use crate::bodies::program::{BodyProgram, PositiveColumn};
 use crate::error::{Error, Result};
 use crate::fit::{Fit, JointFit};
-use crate::friction::falling::FallingFriction;
+use crate::friction::falling::{FallingFriction, ViscousColumns};
 use crate::inertia::columns::inertia_part;
-use crate::inertia::falling::ViscousColumns;
 use crate::inertia::prior::LinkPrior;
 use crate::regression::residuals::root_mean_square;
 use crate::regression::solution::Solution;
@@ -74,20 +73,20 @@ impl PhysicalFit {
 
 /// Finds the physically consistent links nearest to the data.
 ///
-/// Returns all values of `columns`, the effect of the constraint, and viscous friction that fell
-/// with speed. `known` is the robot whose friction was subtracted.
+/// Returns the values of all columns of `moving`, the effect of the constraint, and viscous
+/// friction that fell with speed. `known` is the robot whose friction was subtracted.
 ///
 /// # Errors
 ///
 /// [`Error::NoPhysicalLinks`] if the program has no solution.
 pub(super) fn nearest_bodies(
-    robot: &Robot,
+    [robot, known]: [&Robot; 2],
     viscous: &ViscousColumns,
     fit: &Fit,
     moving: &Samples,
     model: &ModelSettings,
 ) -> Result<(DVector<f64>, PhysicalFit, Vec<FallingFriction>)> {
-    let ViscousColumns { known, columns, .. } = *viscous;
+    let columns = &moving.columns;
     let data = &no_sharper(&fit.whitened, &fit.joints[0]);
     let positive = positive_columns([robot, known], columns, fit, model.prior);
     let solve = |prior: &LinkPrior, rising: &[RisingFriction]| {

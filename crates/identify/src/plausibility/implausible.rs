@@ -1,3 +1,4 @@
+use reachtube_diagnose::Hypothesis;
 use serde::{Deserialize, Serialize};
 
 /// A result that is implausible.
@@ -19,4 +20,17 @@ pub enum WrongColumns {
     Swapped,
     /// Columns are in a wrong unit.
     Unit,
+}
+
+impl WrongColumns {
+    /// Returns what is wrong with the columns. It is `None` for offsets and lags, because zeros and
+    /// clocks of robots are off a little.
+    pub(super) fn of(fault: &Hypothesis) -> Option<Self> {
+        match fault {
+            Hypothesis::Sign(..) => Some(Self::Sign),
+            Hypothesis::Swap(..) => Some(Self::Swapped),
+            Hypothesis::Degrees => Some(Self::Unit),
+            _ => None,
+        }
+    }
 }

@@ -2,12 +2,10 @@
 //! bodies.
 
 pub(crate) mod compensated;
-mod fault;
 pub(crate) mod gain;
 pub(crate) mod implausible;
 pub(crate) mod offset;
 mod scale;
-mod search;
 pub(crate) mod validation;
 pub(crate) mod warnings;
 

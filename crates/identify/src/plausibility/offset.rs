@@ -1,13 +1,11 @@
 //! Offsets of positions, estimated together with the parameters of the robot.
 
-use crate::plausibility::fault::Fault;
-use crate::plausibility::search::independent_columns;
 use crate::prepare::log::{PreparedLog, spread};
 use crate::regression::residuals::{autocorrelation_time, root_mean_square};
 use crate::samples::{KnownTorque, Samples, Sampling};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
-use reachtube_robot::{Parameter, Robot};
+use reachtube_robot::{BaseParameters, Parameter, Robot};
 use serde::Serialize;
 
 /// Largest number of samples with which offsets are estimated.
@@ -184,10 +182,13 @@ impl<'a> OffsetSearch<'a> {
 
     /// Returns logs without an offset.
     fn corrected(&self, logs: &[PreparedLog], at: Candidate, offset: f64) -> Vec<PreparedLog> {
-        let fault = Fault::Offset { joint: at.joint, offset };
-        let of_log = |(k, log): (usize, &PreparedLog)| match at.log {
-            Some(own) if own != k => log.clone(),
-            _ => fault.corrected(self.robot, log),
+        let n = self.robot.joint_count();
+        let of_log = |(k, log): (usize, &PreparedLog)| {
+            let mut log = log.clone();
+            if at.log.is_none_or(|own| own == k) {
+                log.q.iter_mut().skip(at.joint).step_by(n).for_each(|q| *q -= offset);
+            }
+            log
         };
         logs.iter().enumerate().map(of_log).collect()
     }
@@ -307,4 +308,10 @@ impl Regression {
 fn without(y: &DMatrix<f64>, normal: &Cholesky<f64, Dyn>, vector: DVector<f64>) -> DVector<f64> {
     let pass = |vector: DVector<f64>| &vector - y * normal.solve(&y.tr_mul(&vector));
     pass(pass(vector))
+}
+
+/// Returns the parameters whose columns of the regressor are independent.
+pub(super) fn independent_columns(robot: &Robot, columns: &[Parameter]) -> Vec<Parameter> {
+    let base = BaseParameters::of_robot(robot, columns);
+    base.independent().iter().map(|k| columns[*k]).collect()
 }

@@ -1,17 +1,22 @@
 use crate::fit::Fit;
 use crate::inertia::fit::InertiaFit;
 use crate::plausibility::compensated::input_unit_warning;
-use crate::plausibility::fault::{Columns, Fault};
 use crate::plausibility::gain::{self, Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
 use crate::plausibility::implausible::{Implausible, WrongColumns};
+use crate::plausibility::offset::independent_columns;
 use crate::plausibility::scale::torque_unit_warning;
-use crate::plausibility::search::find_fault;
-use crate::prepare::log::PreparedLog;
+use crate::prepare::log::{PreparedLog, spread};
 use crate::samples::{KnownTorque, Samples, Sampling};
+use reachtube_diagnose::{
+    Columns, FreeMisfit, Hypothesis, LikeliestFault, Signals, likeliest_fault,
+};
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
 const SIGNIFICANT: f64 = 4.0;
+
+/// Largest number of recordings in which a fault is searched.
+const MOST_LOGS: usize = 64;
 
 /// Share of the torque that may stay unexplained without a warning.
 const MAX_UNEXPLAINED: f64 = 0.3;
@@ -55,13 +60,13 @@ impl Checked<'_> {
         let unexplained: Vec<String> = self.unexplained_torque().collect();
         let inverted = || {
             let (joint, share) = likelihood.inverted_torque()?;
-            let fault = Fault::Sign { joint, columns: Columns::Torque };
+            let fault = Hypothesis::Sign(joint, Columns::Torque);
             Some(fault.warning(self.robot, (joint, share)))
         };
-        let is_determined = self.fit.determined == self.fit.parameters.len();
-        let found = find_fault(self.robot, self.logs, self.samples, self.sampling, is_determined);
+        let found = self.likeliest_fault();
         // Degrees make all masses meaningless.
-        let torque_unit = if found.as_ref().is_some_and(|found| found.fault == Fault::Degrees) {
+        let torque_unit = if found.as_ref().is_some_and(|found| found.fault == Hypothesis::Degrees)
+        {
             None
         } else if self.compensated {
             input_unit_warning(self.robot, self.logs, self.sampling)
@@ -73,7 +78,7 @@ impl Checked<'_> {
         let fault = found
             .map(|found| {
                 let text = found.fault.warning(self.robot, found.clearest);
-                Implausible { text, columns: found.fault.wrong_columns() }
+                Implausible { text, columns: WrongColumns::of(&found.fault) }
             })
             .or_else(|| {
                 if has_no_unit { None } else { inverted() }
@@ -91,6 +96,20 @@ impl Checked<'_> {
             .chain(torque_unit.map(implausible(Some(WrongColumns::Unit))))
             .chain(others.map(implausible(None)))
             .collect()
+    }
+
+    /// Returns the fault of the columns that explains the torque best, if one does.
+    fn likeliest_fault(&self) -> Option<LikeliestFault> {
+        let Sampling { slow, margin, .. } = self.sampling;
+        let signals = spread(self.logs, MOST_LOGS).into_iter().map(|log| Signals {
+            step: log.step,
+            motion: [&log.q, &log.qd, &log.qdd],
+            torques: &log.tau,
+            moves: log.moving_mask(slow, *margin),
+        });
+        let columns = independent_columns(self.robot, &self.samples.columns);
+        let misfit = FreeMisfit::new(self.robot, columns, signals.collect());
+        likeliest_fault(&misfit, self.fit.determined == self.fit.parameters.len())
     }
 
     /// Returns whether other recordings of the same motions have plausible gains.

@@ -19,8 +19,7 @@ impl Robot {
     /// # Guarantee
     ///
     /// [`Physicality::Links`] is a proof for the links' inertias as loaded, under outward rounding,
-    /// with joint rotations taken as exact. [`Physicality::Searched`] proves nothing;
-    /// [`Robot::prove_positive_definite`] may give a proof.
+    /// with joint rotations taken as exact. [`Physicality::Searched`] proves nothing.
     ///
     /// # Errors
     ///

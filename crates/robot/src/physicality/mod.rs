@@ -1,6 +1,5 @@
 //! Checks whether a robot's mass matrix is positive definite, as the mass matrix of bodies is.
 
-mod cover;
 mod links;
 pub(crate) mod outcome;
 mod search;

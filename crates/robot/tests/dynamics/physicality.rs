@@ -6,7 +6,7 @@ use reachtube_robot::{
 };
 
 #[test]
-fn lwa4p_is_proved_over_its_position_limits() {
+fn no_position_of_lwa4p_is_found_where_its_mass_matrix_is_not_positive_definite() {
     let robot = Robot::lwa4p();
     let Physicality::Searched { joint, pivot, .. } = robot.check_physical().unwrap() else {
         panic!("links with base parameters are no bodies")
@@ -14,7 +14,6 @@ fn lwa4p_is_proved_over_its_position_limits() {
     // The last pivot is J6 + Izz6 at all positions.
     assert_eq!(joint, 5);
     assert!((pivot - (0.637 + 0.00569)).abs() < 1e-12);
-    assert!(robot.prove_positive_definite(60_000).is_some());
 }
 
 #[test]
@@ -49,7 +48,6 @@ fn a_violation_is_found_and_named() {
     };
     let at = robot.joints().iter().position(|j| j.name == joint).unwrap();
     assert!(pivot <= 0.0 && pivots_at(&q)[at] == pivot);
-    assert!(robot.prove_positive_definite(2_000).is_none());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What is implausible about the sets, and why.
 
 use crate::fit::record::Overfit;
-use crate::plausibility::cause::{Cause, Reading};
+use crate::plausibility::cause::Cause;
 use crate::plausibility::warning::{Remark, Warning, WarningKind};
 use crate::result::code::Code;
 use crate::result::findings::words::listed;
@@ -145,14 +145,11 @@ impl From<&Cause> for Warning {
     fn from(cause: &Cause) -> Self {
         let mut remedy = None;
         let text = match cause {
-            Cause::Reading { reading, unexplained, as_stated } => {
-                if let Reading::Kind(kind) = reading {
-                    remedy = Some(Remedy::new("torque", format!("{kind:?}").to_lowercase()));
-                }
+            Cause::Reading { clause, kind, unexplained, as_stated } => {
+                remedy = kind.map(|kind| Remedy::new("torque", format!("{kind:?}").to_lowercase()));
                 format!(
-                    "The most likely cause: {}. So read, {} of the recorded input is not explained \
-                     by the recorded motion, and {} as stated.",
-                    reading_words(reading),
+                    "The most likely cause: {clause}. So read, {} of the recorded input is not \
+                     explained by the recorded motion, and {} as stated.",
                     percent(*unexplained),
                     percent(*as_stated)
                 )
@@ -260,33 +257,6 @@ fn constant_inertia_words(cause: &Cause) -> String {
     )
 }
 
-fn reading_words(reading: &Reading) -> String {
-    match reading {
-        Reading::Stated => "the recordings are as stated".into(),
-        Reading::TorqueUnit(unit) if *unit < 1.0 => "the torques are in N mm, not in N m".into(),
-        Reading::TorqueUnit(_) => "the torques are in kN m, not in N m".into(),
-        Reading::OppositeSigns => "the torques have the opposite sign".into(),
-        Reading::Kind(kind) => {
-            format!("the torques are of the kind `{}`", format!("{kind:?}").to_lowercase())
-        }
-        Reading::Filtered => {
-            "dry friction steps where joints turn and rest, and the recorded torques do not, as \
-             where they were filtered; `reachtube prepare --compensate` writes inputs that are \
-             free of it"
-                .into()
-        }
-        Reading::Milliseconds => "the times are in ms, not in s".into(),
-        Reading::Degrees => "positions and velocities are in degrees, not in rad".into(),
-        Reading::Lag(lag) => format!("the torques are about {lag} s later than the motion"),
-        Reading::OppositeSign(joint) => {
-            format!("the torque of joint {joint} has the opposite sign")
-        }
-        Reading::Swapped(one, other) => {
-            format!("the torques of joints {one} and {other} are swapped")
-        }
-    }
-}
-
 /// Returns about half of a time, s.
 fn half(time: f64) -> String {
     let half = 0.5 * time;
@@ -319,8 +289,9 @@ mod tests {
 
     #[test]
     fn a_cause_names_its_remedy_as_data() {
-        let reading = Reading::Kind(reachtube_recordings::Torque::Motor);
-        let cause = Cause::Reading { reading, unexplained: 0.07, as_stated: 3.0 };
+        let kind = Some(reachtube_recordings::Torque::Motor);
+        let clause = "the torques are of the kind `motor`".into();
+        let cause = Cause::Reading { clause, kind, unexplained: 0.07, as_stated: 3.0 };
         let finding = Finding::from(&Warning::from(&cause));
         let written = finding.written_for(FrontEnd::Python);
         assert!(written.contains("of the kind `motor`. So read, 7 % of"), "{written}");

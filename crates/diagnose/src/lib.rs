@@ -1,0 +1,21 @@
+//! What recordings of a robot may mean instead of what was stated.
+//!
+//! A [`Hypothesis`] says what is wrong, in words and as a [`Change`] of how each number is read. It
+//! is named only if the torques are explained much better under it:
+//!
+//! - [`RobotMisfit`] compares the recorded input with the one that a known robot needs.
+//! - [`FreeMisfit`] leaves the robot's parameters free.
+
+mod change;
+mod free_misfit;
+mod hypothesis;
+mod likeliest;
+mod reading;
+mod robot_misfit;
+
+pub use change::Change;
+pub use free_misfit::{FreeMisfit, Signals};
+pub use hypothesis::{Columns, Hypothesis};
+pub use likeliest::{LikeliestFault, likeliest_fault};
+pub use reading::{Reading, gains};
+pub use robot_misfit::RobotMisfit;
