@@ -4,7 +4,6 @@ use crate::common::{
     Disturbed, Random, Recorded, conform_all, grid, read, two_joints, write_data_set,
 };
 use reachtube_abstraction::{Abstraction, ModelKind};
-use reachtube_conform::Code;
 use reachtube_conform::next_motion::Trust;
 use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::NominalStart;
