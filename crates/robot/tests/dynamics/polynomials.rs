@@ -4,11 +4,8 @@
 use std::sync::Arc;
 
 use proptest::prelude::*;
-use proptest::strategy::ValueTree;
 use reachtube_robot::{Robot, Workspace};
-use reachtube_scalar::{
-    Elementary, Interval, Scalar, TaylorBox, TaylorModel, TaylorPolynomial, TaylorSpace,
-};
+use reachtube_scalar::{Elementary, Interval, Scalar, TaylorPolynomial, TaylorSpace};
 use serde_json::Value;
 
 use crate::close::assert_close;
@@ -242,19 +239,6 @@ fn the_extensions_off_the_circle_agree_on_it() {
         let same = difference.terms().iter().all(|t| t.coefficient.abs() < 1e-13);
         assert!(same, "{difference:?}");
     }
-}
-
-/// Returns the results of rnea, aba and crba for [sin, cos, q̇, q̈ or tau].
-fn all_algorithms<S: Scalar>(robot: &Robot, [sin, cos, qd, last]: [&[S]; 4]) -> Vec<S> {
-    let n = robot.joint_count();
-    let mut ws = Workspace::new(robot);
-    let mut out = vec![S::zero(); n * n + 2 * n];
-    let (tau, rest) = out.split_at_mut(n);
-    let (qdd, mass) = rest.split_at_mut(n);
-    robot.rnea(sin, cos, qd, last, &mut ws, tau);
-    robot.aba(sin, cos, qd, last, &mut ws, qdd);
-    robot.crba(sin, cos, &mut ws, mass);
-    out
 }
 
 /// The dynamics over any scalar uses only ring operations and division.
