@@ -138,7 +138,6 @@ fn options_without_an_effect_are_refused() {
         ("--model model.json --to mjcf --lock axis1=0", "--lock", "MuJoCo"),
         ("--robot arm.toml --to urdf --input range", "--input", "URDF"),
         ("--robot arm.toml --to urdf --capsules arm.toml", "--capsules", "URDF"),
-        (&format!("{model} --uncertainty 0.1"), "--uncertainty", "CORA"),
         (&format!("{model} --capsules arm.toml"), "--capsules", "CORA"),
         (&format!("{model} --lock axis1=0"), "--lock", "CORA"),
     ] {

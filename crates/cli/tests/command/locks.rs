@@ -72,7 +72,7 @@ fn files_keep_what_was_locked() {
     assert!(text.contains("locked: finger1 = 0.03 m, finger2 = 0.03 m\n"), "{text}");
     lab.run("abstract --robot arm.urdf --lock finger1=0.03 --out model1.json").exits(0);
     let model: serde_json::Value = serde_json::from_str(&lab.read("model1.json")).unwrap();
-    let locked = model["drive"]["robot"]["locked"].as_array().unwrap();
+    let locked = model["robot"]["locked"].as_array().unwrap();
     assert_eq!(locked.len(), 2);
     assert_eq!((&locked[1]["name"], &locked[1]["position"]), (&"finger2".into(), &0.03.into()));
     // The written URDF has the hand's inertia in the arm, and its companion has the lock.

@@ -77,7 +77,7 @@ fn a_demo_leaves_other_folders_alone() {
     lab.write("out/recordings/README.md", MINE);
     lab.run("demo --out out").fails_with(&[
         "out/recordings",
-        "no demo has written",
+        "no campaign has written",
         "empty folder",
     ]);
     assert_eq!(lab.read("out/recordings/README.md"), MINE);

@@ -78,7 +78,7 @@ fn completions_and_manual_pages_name_every_command() {
     assert!(page.contains(".TH reachtube 1") && page.contains("reachtube\\-conform"), "{page}");
     lab.run("man --out pages").exits(0).notes("pages to pages");
     let pages = lab.names("pages");
-    for name in ["reachtube.1", "reachtube-conform.1", "reachtube-reproduce-table1.1"] {
+    for name in ["reachtube.1", "reachtube-conform.1", "reachtube-robot-show.1"] {
         assert!(pages.iter().any(|page| page == name), "{pages:?}");
     }
     assert!(lab.read("pages/reachtube-conform.1").contains("max\\-gap"));

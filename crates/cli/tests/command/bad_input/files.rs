@@ -143,7 +143,7 @@ pub(super) const CASES: &[Case] = &[
     ),
     Case::refused(
         "a model of another version",
-        |lab| replace(lab, "model.json", "\"version\": 3", "\"version\": 9"),
+        |lab| replace(lab, "model.json", "\"version\": 4", "\"version\": 9"),
         CHECK,
         &["model.json: it has version 9", "run conform again"],
     ),
