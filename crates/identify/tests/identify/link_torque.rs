@@ -111,7 +111,7 @@ fn physical_links_predict_link_torque_as_well_as_plain_least_squares() {
         let plain = identified("model.physical = false\nmodel.robust = false");
         assert!(physical.inertia.physical.is_some() && plain.inertia.physical.is_none());
         // The last link has hardly any inertia, which so short a motion shows to a half.
-        let is_about_last = |warning: &String| warning.contains("inertia that joint7 feels (0.00");
+        let is_about_last = |warning: &String| warning.contains("the motor of joint7 moves (0.00");
         assert!(physical.warnings.iter().all(is_about_last), "{:?}", physical.warnings);
         let joints = held_out(&physical).joints.iter().zip(&held_out(&plain).joints);
         for (squares, (physical, plain)) in squares.iter_mut().zip(joints) {

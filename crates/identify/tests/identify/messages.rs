@@ -147,5 +147,5 @@ fn a_simulation_that_misses_by_more_than_the_motion_is_named() {
     recorded.edit("held_out.csv", |rows| rows.iter_mut().for_each(|row| row[18] += 40.0));
     let warnings = recorded.found().warnings;
     let simulated = warnings.iter().find(|w| w.contains("simulated")).expect("a warning");
-    assert_parts(simulated, &["over 0.5 s", "joint6 by", "where it moves", "do not use"]);
+    assert_parts(simulated, &["over 0.5 s", "joint6 by", "of a motion of", "do not use"]);
 }

@@ -231,7 +231,7 @@ fn undetermined_parameters_are_named() {
         found.warnings
     );
     // Joint 6 rests, so that nothing shows the inertia of its motor.
-    let [rest, moves] = ["joint6 feels (nothing shows it)", "joint2 feels"];
+    let [rest, moves] = ["motor of joint6 moves (nothing shows it)", "motor of joint2 moves"];
     let open = |part: &str| found.warnings.iter().any(|warning| warning.contains(part));
     assert!(open(rest) && !open(moves), "{:?}", found.warnings);
     let inertia = &found.inertia.diagonal;
