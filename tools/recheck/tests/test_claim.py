@@ -18,7 +18,7 @@ def judged(folder, capsys, *options):
 
 
 @pytest.mark.parametrize(("notion", "missing"), [
-    ("hull", 0), ("phase-plane", 1), ("exact", 1), ("trace", 2),
+    ("hull", 0), ("phase-plane", 1), ("exact", 1),
 ])
 def test_rows_alone_do_not_decide_a_notion_that_asks_more(tmp_path, capsys, notion, missing):
     toy.write(tmp_path, toy.content(notion=notion))
