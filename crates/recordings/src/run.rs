@@ -90,7 +90,7 @@ impl Run {
     ///
     /// # Errors
     ///
-    /// [`RunError`] names the array and the sample when there is no joint or no sample, lengths do
+    /// The error names the array and the sample when there is no joint or no sample, lengths do
     /// not fit, a number is not finite, or times do not increase.
     pub fn new(
         joints: usize,
@@ -120,7 +120,7 @@ impl Run {
     ///
     /// # Errors
     ///
-    /// [`RunError`] names the sample when their number does not fit or one is not finite.
+    /// The error names the sample when their number does not fit or one is not finite.
     ///
     /// # Examples
     ///

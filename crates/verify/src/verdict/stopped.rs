@@ -18,7 +18,7 @@ use crate::verdict::witness::Approach;
 
 impl Verification {
     /// Adds the stops of a scenario: the answer then holds for the motion up to the stop and for
-    /// the stop from each sample up to [`MotionStops::covered_until`], until standstill. Obstacles
+    /// the stop from each sample up to `MotionStops::covered_until`, until standstill. Obstacles
     /// go on growing meanwhile.
     ///
     /// If a stop is triggered at a distance d, the sample before has each link further than d from
