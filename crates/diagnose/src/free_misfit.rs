@@ -24,6 +24,13 @@ pub struct Signals<'a> {
     pub moves: Vec<bool>,
 }
 
+impl Signals<'_> {
+    /// Returns the samples at which at least one of n joints moves.
+    fn moving(&self, n: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.moves.len() / n).filter(move |k| self.moves[k * n..(k + 1) * n].contains(&true))
+    }
+}
+
 /// The torque that no parameters of a robot explain in some recordings.
 pub struct FreeMisfit<'a> {
     pub(crate) robot: &'a Robot,
@@ -44,8 +51,8 @@ impl<'a> FreeMisfit<'a> {
     /// independent.
     #[must_use]
     pub fn new(robot: &'a Robot, columns: Vec<Parameter>, recordings: Vec<Signals<'a>>) -> Self {
-        let samples = recordings.iter().map(|own| own.torques.len() / robot.joint_count());
-        let stride = samples.sum::<usize>().div_ceil(ENOUGH_SAMPLES).max(1);
+        let moving = recordings.iter().map(|own| own.moving(robot.joint_count()).count());
+        let stride = moving.sum::<usize>().div_ceil(ENOUGH_SAMPLES).max(1);
         Self { robot, columns, recordings, stride }
     }
 
@@ -80,7 +87,7 @@ impl<'a> FreeMisfit<'a> {
             let late = |k: usize, joint: usize| k.checked_add_signed(shifts[joint]);
             let has_torque =
                 |k: &usize| (0..n).all(|joint| late(*k, joint).is_some_and(|at| at < samples));
-            for k in (0..samples).step_by(self.stride).filter(has_torque) {
+            for k in own.moving(n).step_by(self.stride).filter(has_torque) {
                 let row = |values: &'a [f64]| &values[k * n..(k + 1) * n];
                 for joint in 0..n {
                     if own.moves[k * n + change.motion_columns[joint]] {

@@ -298,7 +298,7 @@ fn raw_logs_of_strangers_end_with_a_reason() {
     let currents = "ur3e_rtde/wave_currentData_100v_40a.head.csv";
     model(&arm, currents, "", 2, "there is no torque, but there are motor currents");
     let gains = "--gains 10,10,10,9,9,9";
-    model(&arm, currents, gains, 2, "samples are missing there");
+    model(&arm, currents, gains, 2, "samples are missing and the input there is unknown");
     model(&arm, currents, &format!("{gains} --max-gap 0.024"), 2, "1 of one joint at a time");
 }
 
