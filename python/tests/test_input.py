@@ -120,7 +120,6 @@ def test_what_users_write_is_taken(model: rt.Model, data: rt.Recordings) -> None
         (lambda data: rt.prepare(rt.Robot.lwa4p(), data, columns="q=p"), "columns is of type str"),
         (lambda data: rt.model(rt.Robot.lwa4p(), data, columns=["q"]), "columns is of type list"),
         (lambda data: rt.model(rt.Robot.lwa4p(), settings={}), "settings is of type dict"),
-        (lambda data: rt.abstract(rt.Robot.lwa4p(), box=[1, 2]), "the box has 2 radii; give 3"),
         (lambda data: X ** "a", "the exponent 'a'"),
         (lambda data: X + "a", "'a' is no polynomial"),
     ],

@@ -290,6 +290,6 @@ def test_a_defect_of_a_run_in_memory_names_the_run() -> None:
     t = 0.01 * np.arange(1000)
     t[500:] += 3.0
     q, qd = (np.tile(wave(t)[:, None], robot.joints) for wave in (np.sin, np.cos))
-    with pytest.raises(rt.DefectsError, match=r"^dynamic_1:502: there is a gap") as refused:
+    with pytest.raises(rt.DefectsError, match=r"^excitation_1:502: there is a gap") as refused:
         rt.identify(robot, excitation=rt.Run(t, q, qd, np.zeros_like(q)))
-    assert refused.value.defects[0].file == "dynamic_1"
+    assert refused.value.defects[0].file == "excitation_1"
