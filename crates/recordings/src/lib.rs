@@ -77,10 +77,10 @@ pub use reading::{
 };
 pub use refusal::Refusal;
 pub use resample::{EvenSamples, Sample};
-pub use run::{Run, column_names};
+pub use run::{Run, RunError, column_names};
 pub use sample_error::SampleError;
 pub use sensor_noise::noise_deviations;
 pub use source::{ReadOptions, RunSource, SuiteEntry};
-pub use state::State;
+pub use state::{State, StateKind};
 pub use torque::Torque;
 pub use units::{check_limits, integral_gap};
