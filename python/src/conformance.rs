@@ -133,6 +133,12 @@ pub(crate) fn pull_without_fit() -> Failure {
     Failure::Setting("pull is the weight of a fit, and fit names no group".into())
 }
 
+/// Returns the JSON schema of model files.
+#[pyfunction]
+pub(crate) fn model_schema() -> String {
+    Model::schema().to_string()
+}
+
 /// Checks the text of a model file; errors name it `origin`.
 #[pyfunction]
 pub(crate) fn check_model(py: Python<'_>, text: String, origin: String) -> PyResult<()> {

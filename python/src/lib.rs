@@ -30,7 +30,9 @@ mod _reachtube {
     #[pymodule_export]
     use crate::abstraction::NativeAbstraction;
     #[pymodule_export]
-    use crate::conformance::{among_others, check, check_model, conform, reach, report};
+    use crate::conformance::{
+        among_others, check, check_model, conform, model_schema, reach, report,
+    };
     #[pymodule_export]
     use crate::excitation::excite;
     #[pymodule_export]

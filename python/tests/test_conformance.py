@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import reachtube as rt
-from reachtube import _settings
+from reachtube import _reachtube, _settings
 
 from conftest import SCHUNK, runs, write_csv
 
@@ -300,8 +300,7 @@ def test_the_papers_recordings_cost_what_the_command_finds(robot: rt.Robot) -> N
 
 
 def test_the_schema_of_models_has_the_notions_and_the_choices() -> None:
-    path = Path(__file__).parents[2] / "docs/model.schema.json"
-    schema = json.loads(path.read_text())["$defs"]
-    assert schema["notion"]["enum"] == list(get_args(_settings.Notion))
-    known = {*schema["settings"]["properties"], "paper_model", "order", "expansion", "max_gap"}
+    schema = json.loads(_reachtube.model_schema())["$defs"]
+    assert [one["const"] for one in schema["Notion"]["oneOf"]] == list(get_args(_settings.Notion))
+    known = {*schema["Settings"]["properties"], "paper_model", "order", "expansion", "max_gap"}
     assert set(_settings.among(inspect.signature(rt.conform).parameters)) <= known

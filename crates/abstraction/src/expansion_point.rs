@@ -1,4 +1,5 @@
 use reachtube_robot::{Joint, Robot};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -6,7 +7,7 @@ use crate::limits::is_within;
 
 /// The point about which the forward dynamics is expanded, one value per joint for each of q, q̇
 /// and u. The paper's point is 0.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExpansionPoint {
     /// Positions q_a, n, rad.

@@ -1,9 +1,10 @@
-//! The file of a polynomial model (docs/abstraction.schema.json).
+//! The file of a polynomial model (`reachtube man --schema abstraction`).
 
 use std::path::Path;
 
 use reachtube_files::json;
 use reachtube_robot::{Robot, RobotDescription};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::abstraction::Abstraction;
@@ -20,22 +21,37 @@ const VERSION: u32 = 1;
 const REMEDY: &str = "give a file that `abstract --out` wrote";
 
 /// The content of a model's file.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct ModelFile {
+    /// The name of the format, "reachtube-abstraction".
+    #[schemars(extend("const" = FORMAT))]
     format: String,
+    /// The version of the format.
+    #[schemars(extend("const" = VERSION))]
     version: u32,
+    /// Name and version of the program that wrote the file.
     tool: String,
+    /// The paper's number of the model.
     model: ModelKind,
+    /// Order of the model.
     order: u32,
+    /// The point about which the model is expanded.
     expansion_point: ExpansionPoint,
     /// Names of the variables, in the order of the exponents.
     variables: Vec<String>,
     /// The point from which the terms count offsets, one value per variable.
     origin: Vec<f64>,
+    /// The robot.
     robot: RobotDescription,
     /// Terms of the acceleration of each joint, rad/s².
     acceleration: Vec<Vec<TermRecord>>,
+}
+
+/// Returns the JSON schema of the file.
+#[must_use]
+pub fn file_schema() -> serde_json::Value {
+    reachtube_files::schema::<ModelFile>()
 }
 
 impl PolynomialModel {

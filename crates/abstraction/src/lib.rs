@@ -46,6 +46,7 @@ pub use abstraction::Abstraction;
 pub use error::{Error, RecordsError};
 pub use expansion_point::ExpansionPoint;
 pub use field::ModelField;
+pub use file::file_schema;
 pub use linear_model::linear_model;
 pub use linearisation::Linearisation;
 pub use model_kind::ModelKind;

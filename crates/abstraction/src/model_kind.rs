@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -13,7 +14,7 @@ use crate::error::Error;
 /// assert!(ModelKind::try_from(4).is_err());
 /// # Ok::<(), reachtube_abstraction::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "u32", into = "u32")]
 pub enum ModelKind {
     /// (13): constant mass matrix, viscous friction, no Coriolis terms.

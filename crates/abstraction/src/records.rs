@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use reachtube_robot::{JointKind, Robot};
 use reachtube_scalar::{TaylorPolynomial, TaylorSpace, TaylorTerm};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::abstraction::Abstraction;
@@ -14,7 +15,7 @@ use crate::polynomial_model::PolynomialModel;
 const COEFFICIENT_TOLERANCE: f64 = 1e-9;
 
 /// A term in a file: exponents, one per variable, and coefficient.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TermRecord(pub Vec<u8>, pub f64);
 
 /// The polynomials of a model as a file holds them.

@@ -18,6 +18,7 @@ mod output;
 mod progress;
 mod reference;
 mod report_files;
+mod schema;
 mod table;
 mod understood;
 mod usage;
@@ -48,7 +49,8 @@ fn main() -> ExitCode {
         Ok(Outcome::Vacuous | Outcome::Undecided) => ExitCode::from(LEFT_OPEN),
         Err(error::Error::Usage(message)) if !json || !message.use_stderr() => message.exit(),
         Err(error) if json => {
-            output::json_error(&error.to_string(), error.kind(), ERROR);
+            let (text, kind) = (error.to_string(), error.kind());
+            output::json_error(&output::ErrorOutput { error: &text, kind, exit_code: ERROR });
             ExitCode::from(ERROR)
         }
         Err(error) => {

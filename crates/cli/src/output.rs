@@ -8,6 +8,7 @@ use anstyle::{AnsiColor, Style};
 use reachtube::finding::printable;
 use reachtube::write;
 use reachtube_files::ErrorKind;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
@@ -137,9 +138,20 @@ pub(crate) fn error(text: &str) {
     text.lines().for_each(|text| line("error", text));
 }
 
+/// An error, as the last line of standard error with --json.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct ErrorOutput<'a> {
+    /// The message that is printed without --json; one line for each defect.
+    pub error: &'a str,
+    /// What the error is about.
+    pub kind: ErrorKind,
+    /// The exit code.
+    pub exit_code: u8,
+}
+
 /// Prints an error as one line of JSON on standard error.
-pub(crate) fn json_error(error: &str, kind: ErrorKind, exit_code: u8) {
-    let object = serde_json::json!({ "error": error, "kind": kind, "exit_code": exit_code });
+pub(crate) fn json_error(error: &ErrorOutput<'_>) {
+    let object = serde_json::to_string(error).expect("an error has string keys");
     let _ = writeln!(std::io::stderr(), "{object}");
 }
 

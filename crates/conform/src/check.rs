@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::claim::notion::judged;
@@ -27,7 +28,7 @@ const NOTED: [Code; 5] = [
 ];
 
 /// The answer of a check.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Check {
     /// Whether the recordings lie in the reachable set, and where not.
     #[serde(flatten)]

@@ -1,9 +1,10 @@
 use reachtube_reach::Hyperrectangle;
 use reachtube_scalar::rounding::add_up;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The uncertainty sets of a model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct UncertaintySets {
     /// X0, 2n, rad and rad/s, around the nominal initial state.
     pub initial_set: Hyperrectangle,

@@ -6,6 +6,7 @@
 //! one moved, so that U must cover the difference there.
 
 use reachtube_scalar::Interval;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
@@ -14,7 +15,7 @@ use crate::reach::SuiteReach;
 use crate::sets::UncertaintySets;
 
 /// A joint whose dry friction may differ between motions in a reachable set.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stiction {
     /// The joint, from 1.

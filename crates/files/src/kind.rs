@@ -1,9 +1,10 @@
 use std::any::Any;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What an error is about, which decides how a front end reports it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ErrorKind {
     /// The command line.

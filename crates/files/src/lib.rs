@@ -6,6 +6,7 @@
 //! - [`json`] reads and writes versioned files.
 //! - [`Journal`] keeps what a long job has finished.
 //! - [`Kind`] says what an error is about.
+//! - [`schema()`] gives the JSON schema of what a type writes.
 //! - [`read`] and [`read_text`] read a file with an error that names it, and [`bytes`] without.
 //!
 //! # Examples
@@ -29,6 +30,7 @@ mod kind;
 mod names;
 mod overwrite;
 mod read;
+mod schema;
 pub mod write;
 
 pub use digest::hex;
@@ -38,3 +40,4 @@ pub use kind::{ErrorKind, Kind};
 pub use names::distinct_names;
 pub use overwrite::{MARK, Overwrite, TOOL};
 pub use read::{bytes, read, read_text};
+pub use schema::{schema, schema_of_any};

@@ -1,10 +1,13 @@
 use std::borrow::Cow;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What a [`Finding`](crate::Finding) is about, by its name in JSON. Codes are stable; the words of
 /// a finding are not. They are listed in docs/reference.md.
-#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(transparent)]
 pub struct Code(Cow<'static, str>);
 

@@ -4,6 +4,7 @@ use crate::regression::residuals::{
 use crate::regression::solution::Solution;
 use crate::regression::triangular_factor::TriangularFactor;
 use crate::samples::Samples;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Condition beyond which a combination of parameters counts as undetermined: a rigid robot's
@@ -35,7 +36,7 @@ pub struct Fit {
 }
 
 /// Quality of the fit of one joint's torque in a group of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct JointFit {
     /// Number of rows that were used.
     pub rows: usize,

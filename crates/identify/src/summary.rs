@@ -11,10 +11,11 @@ use crate::plausibility::offset::PositionOffset;
 use crate::validate::simulation::WindowErrors;
 use crate::validate::torque::LogValidation;
 use reachtube_robot::RobotDescription;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The part of an identification that `reachtube identify --json` prints.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct Summary<'a> {
     /// Description of the identified robot.
     pub robot: &'a RobotDescription,
@@ -33,6 +34,7 @@ pub struct Summary<'a> {
     /// Number of combinations that the recordings determine.
     pub determined: usize,
     /// Condition number of the recorded motions, relative to a motion through all positions.
+    #[schemars(with = "Option<f64>")]
     pub condition: f64,
     /// The inertia that each joint feels, with its standard error.
     pub diagonal: &'a [JointInertia],

@@ -7,6 +7,7 @@ use reachtube_recordings::{
     Defect, Inspection, LogSettings, LoggedOptions, MemoryRuns, ReadOptions, Run, RunEntry,
     RunSource, Understood, check_limits, inspect_source, read_logged,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cut::Cutting;
@@ -15,7 +16,7 @@ use crate::found::LogFiles;
 use crate::log::{Log, LogOptions};
 
 /// A summary of logs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LogInspection {
     /// The summary of the recordings.
     #[serde(flatten)]

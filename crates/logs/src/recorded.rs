@@ -7,6 +7,7 @@ use reachtube_files::{hex, write::atomically};
 use reachtube_recordings::{
     Defect, Error as RecordingsError, GapLimit, MemoryRuns, ReadOptions, RunSource, column_names,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -26,7 +27,7 @@ pub struct Recorded<'a> {
 }
 
 /// A recording that was written.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RecordedRun {
     /// Its file in the folder.
     pub file: String,

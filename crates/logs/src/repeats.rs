@@ -1,5 +1,6 @@
 //! Runs that repeat one motion, found by their starts and their velocities.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::cut::Cut;
@@ -20,7 +21,7 @@ const STEP: f64 = 0.01;
 const DURATION: f64 = 0.1;
 
 /// A test suite of runs that repeat one motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Repeats {
     /// The suite's name.
     pub suite: String,

@@ -1,9 +1,10 @@
 //! Tables of text.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A table of texts: the first column names the row.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct TextTable {
     /// What the table shows.
     pub title: String,

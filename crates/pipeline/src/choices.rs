@@ -5,6 +5,7 @@ use reachtube_conform::settings::Equations;
 use reachtube_conform::{Group, Model};
 use reachtube_identify::prepare::PrepareSettings;
 use reachtube_recordings::{ColumnSettings, LogSettings, Torque};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -103,7 +104,7 @@ fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
 }
 
 /// A choice that was made, and why.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Choice {
     /// The key in the settings.
     pub key: &'static str,

@@ -3,6 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use reachtube_conform::{Answer, Check, Silent};
 use reachtube_finding::Finding;
 use reachtube_recordings::{MemoryRuns, RunSource};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::choices::Choices;
@@ -17,7 +18,7 @@ const MOST_SHOWN: usize = 12;
 const MOST_DECIDING: usize = 10;
 
 /// A model beside motions that were held out from every choice.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct HeldOut {
     /// Number of windows.
     pub windows: usize,
@@ -27,6 +28,7 @@ pub struct HeldOut {
     pub outside: usize,
     /// The factor by which the set of each joint would have to grow where it is left furthest, n;
     /// 1 where nothing lies outside.
+    #[serde(skip)]
     pub growth: Vec<f64>,
     /// Number of motions that are as long as a window; `None` where a motion was held out in part
     /// only.
@@ -35,9 +37,9 @@ pub struct HeldOut {
     /// motions that were held out, 1 where they do; `None` where none suffices.
     pub factor: Option<f64>,
     /// What follows for the next motion, in a few words.
+    #[serde(skip)]
     pub next_motion: String,
     /// Why the motions could not be compared, such as a nominal motion that runs away.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 

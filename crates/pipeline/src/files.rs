@@ -4,41 +4,60 @@ use std::path::Path;
 
 use reachtube_conform::model::Provenance;
 use reachtube_files::MARK;
-use serde_json::{Value, json};
+use reachtube_finding::Finding;
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
 
 use crate::build::Built;
-use crate::choices::Choices;
+use crate::choices::{Choice, Choices};
+use crate::compared::HeldOut;
+use crate::horizon::HorizonWidths;
+use crate::joint_row::JointRow;
+
+/// The answer of `model` as JSON.
+#[derive(Serialize, JsonSchema)]
+pub struct ModelOutput<'a> {
+    /// Whether the model is conformant and its sets are narrow enough.
+    useful: bool,
+    /// Whether the sets were proved to enclose the recordings.
+    conformant: bool,
+    /// Time up to which the model predicts, s.
+    horizon: Option<f64>,
+    /// The set of each joint at the horizon.
+    joints: Vec<JointRow>,
+    /// The check of the motions that were held out.
+    held_out: &'a HeldOut,
+    /// The horizons that were tried, with sets that have their allowance.
+    horizons: &'a [HorizonWidths],
+    /// The choices, each with its reason.
+    choices: &'a [Choice],
+    /// What is claimed, in words.
+    claim: &'a str,
+    /// What contradicts the recordings and the robot first, then the findings of the model.
+    findings: Vec<Finding>,
+    /// What the answer is about.
+    #[serde(flatten)]
+    provenance: Provenance,
+}
 
 impl Built {
-    /// Returns the answer as JSON, as docs/output.schema.json describes it.
+    /// Returns the answer as JSON, as [`ModelOutput`] describes it.
     #[must_use]
     pub fn to_json(&self) -> Value {
-        let Provenance { tool, model_sha256, settings, data } = self.answer.model.own_provenance();
-        json!({
-            "useful": self.is_useful(),
-            "conformant": self.answer.holds(),
-            "horizon": self.choices.horizon,
-            "joints": self.joints(),
-            "held_out": {
-                "windows": self.held_out.windows,
-                "rows": self.held_out.rows,
-                "outside": self.held_out.outside,
-                "motions": self.held_out.motions,
-                "factor": self.held_out.factor,
-                "failure": self.held_out.failure,
-            },
-            "horizons": self.horizons.iter().map(|widths| json!({
-                "horizon": widths.horizon, "ratios": widths.ratios, "reason": widths.reason,
-                "with_fit": widths.with_fit,
-            })).collect::<Vec<Value>>(),
-            "choices": self.made,
-            "claim": self.answer.model.proof.claim,
-            "findings": self.all_findings(),
-            "tool": tool,
-            "model_sha256": model_sha256,
-            "settings": settings,
-            "data": data,
-        })
+        let output = ModelOutput {
+            useful: self.is_useful(),
+            conformant: self.answer.holds(),
+            horizon: self.choices.horizon,
+            joints: self.joints(),
+            held_out: &self.held_out,
+            horizons: &self.horizons,
+            choices: &self.made,
+            claim: &self.answer.model.proof.claim,
+            findings: self.all_findings(),
+            provenance: self.answer.model.own_provenance(),
+        };
+        serde_json::to_value(output).expect("an answer has string keys")
     }
 
     /// Returns the names and the texts of the model file, the robot file and the file of choices,

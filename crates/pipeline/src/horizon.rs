@@ -1,5 +1,6 @@
 use reachtube_conform::Answer;
 use reachtube_conform::plausibility::JointWidth;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::allowance::Widened;
@@ -18,15 +19,15 @@ pub(crate) const MOST_WINDOWS: usize = 200;
 const TOO_WIDE: f64 = 1.5;
 
 /// Widths of the sets at a horizon.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HorizonWidths {
     /// The horizon, s.
     pub horizon: f64,
     /// Half the width of each joint's set by the joint's displacement, n; empty if no sets were
     /// found.
+    #[schemars(with = "Vec<Option<f64>>")]
     pub ratios: Vec<f64>,
     /// Why no sets were found.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// Whether a fit was tried.
     pub with_fit: bool,

@@ -1,9 +1,10 @@
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::build::Built;
 
 /// The set of one joint's position at the horizon, beside the joint's motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct JointRow {
     /// The joint's name.
     pub name: String,

@@ -9,7 +9,9 @@ use reachtube_verify::{
     Answer, Body, Capsules, Margin, Scenario, Scene, Verification, Witness, findings,
     links_without_capsule, picture, report, verify,
 };
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde_json::Value;
 
 use crate::error::Result;
 use crate::prepared::check_job;
@@ -108,6 +110,39 @@ fn verified(
     Ok(Verified { opened, body, scene, motions })
 }
 
+/// The answer of `verify` as JSON.
+#[derive(Serialize, JsonSchema)]
+pub struct VerifyOutput<'a> {
+    /// The worst answer of all motions.
+    answer: Answer,
+    /// The verdict about each motion.
+    motions: Vec<MotionOutput<'a>>,
+    /// What the answer says, statement by statement: the verdict first.
+    findings: Vec<Finding>,
+}
+
+/// The verdict about a motion.
+#[derive(Serialize, JsonSchema)]
+struct MotionOutput<'a> {
+    /// The verdict.
+    #[serde(flatten)]
+    verification: &'a Verification,
+    /// How far each link can be from its nominal motion.
+    margins: Vec<MarginOutput>,
+}
+
+/// How far a link can be from its nominal motion.
+#[derive(Serialize, JsonSchema)]
+struct MarginOutput {
+    /// The joint that moves the link.
+    link: String,
+    /// The distance, m, rounded up; null without a bound.
+    #[schemars(with = "Option<f64>")]
+    margin: f64,
+    /// Start of the step in which it is the largest, s.
+    time: f64,
+}
+
 impl Verified {
     /// Returns the worst answer.
     #[must_use]
@@ -145,25 +180,18 @@ impl Verified {
     /// Returns the answer as JSON.
     #[must_use]
     pub fn to_json(&self) -> Value {
-        let margin = |margin: &Margin| {
-            json!({ "link": self.body.joint_name(margin.joint), "margin": margin.distance,
-                    "time": margin.time })
+        let margin = |margin: &Margin| MarginOutput {
+            link: self.body.joint_name(margin.joint).into(),
+            margin: margin.distance,
+            time: margin.time,
         };
-        let one = |one: &Verification| {
-            json!({
-                "case": one.case,
-                "answer": one.answer,
-                "clearances": one.clearances,
-                "margins": one.margins.iter().map(margin).collect::<Vec<_>>(),
-                "closest": one.closest,
-                "advice": one.advice,
-                "stops": one.stops,
-                "lost": one.lost,
-            })
+        let motion = |verification| MotionOutput {
+            verification,
+            margins: verification.margins.iter().map(margin).collect(),
         };
-        json!({ "answer": self.answer(),
-                "motions": self.motions.iter().map(one).collect::<Vec<_>>(),
-                "findings": self.findings() })
+        let motions = self.motions.iter().map(motion).collect();
+        let output = VerifyOutput { answer: self.answer(), motions, findings: self.findings() };
+        serde_json::to_value(output).expect("an answer has string keys")
     }
 
     /// Returns files by their names: a picture of each motion, and the simulated motion that comes

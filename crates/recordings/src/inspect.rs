@@ -4,6 +4,7 @@
 //! their samples.
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data_set::DataSet;
@@ -16,7 +17,7 @@ use crate::source::{ReadOptions, RunSource};
 use crate::units::time_defect;
 
 /// A summary of a data set.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Inspection {
     /// Path of the folder.
     pub folder: String,
@@ -33,7 +34,7 @@ pub struct Inspection {
 }
 
 /// A group of recordings: a test suite, or the recordings of one kind that have no suite.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RunGroup {
     /// Name of the suite or of the kind.
     pub name: String,
@@ -52,6 +53,7 @@ pub struct RunGroup {
     /// Time between samples, s, if it is fixed and the same in all recordings.
     pub step: Option<f64>,
     /// Shortest and longest time between two samples, s.
+    #[schemars(with = "[Option<f64>; 2]")]
     pub steps: [f64; 2],
     /// Whether all recordings have the same torques at the same times (Definition 2).
     pub same_torque: bool,
@@ -60,9 +62,10 @@ pub struct RunGroup {
 }
 
 /// A summary of one joint over a group.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct JointSummary {
     /// Lowest and highest position, rad.
+    #[schemars(with = "[Option<f64>; 2]")]
     pub position: [f64; 2],
     /// Highest speed, rad/s.
     pub speed: f64,

@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::reading::{ColumnSettings, LogSettings};
@@ -5,7 +6,7 @@ use crate::torque::Torque;
 
 /// Preparation of logs as the recordings of a model: what was done to them before its sets were
 /// found, and what has to be done to other logs before they are compared with it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Preparation {
     /// The kind of the torques of the logs. Gravity and dry friction of the model's robot are

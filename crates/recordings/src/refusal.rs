@@ -2,12 +2,13 @@
 
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::defect::{Defect, DefectKind};
 
 /// All defects of one kind in a data set.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Refusal {
     /// Name of the kind.
     pub kind: &'static str,
@@ -26,7 +27,7 @@ pub struct Refusal {
 }
 
 /// Place and problem of a defect.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct DefectPlace {
     /// Path of the file.
     pub file: String,

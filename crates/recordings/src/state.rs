@@ -1,7 +1,9 @@
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 use reachtube_robot::JointKind;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The quantity of a joint that a state is.
@@ -101,6 +103,20 @@ impl FromStr for State {
         let joint = digits.parse::<usize>().ok().and_then(|joint| joint.checked_sub(1));
         let wrong = || StateNameError { name: name.into() };
         joint.map(|joint| Self { joint, kind }).ok_or_else(wrong)
+    }
+}
+
+impl JsonSchema for State {
+    fn schema_name() -> Cow<'static, str> {
+        "State".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "string",
+            "pattern": "^qd?[1-9][0-9]*$",
+            "description": "A state: q1 is the position of the first joint, qd1 its velocity."
+        })
     }
 }
 

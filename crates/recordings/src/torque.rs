@@ -1,9 +1,10 @@
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The meaning of the columns `tau` of a recording. The user states it, and it is never guessed
 /// (docs/method.md, correction I).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Torque {
     /// The input u of eq. (11) itself: gravity and Coulomb friction are already subtracted.

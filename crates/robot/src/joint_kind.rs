@@ -5,6 +5,7 @@ use core::f64::consts::{PI, TAU};
 use core::fmt;
 use nalgebra::Vector3;
 use reachtube_scalar::Elementary;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The kind of a joint: how its position moves the link.
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(JointKind::Prismatic.force_unit(), "N");
 /// assert_eq!(JointKind::Prismatic.sin_cos(&0.3), (0.3, 1.0));
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum JointKind {
     /// The link rotates about the axis: q in rad, q̇ in rad/s, torque in N m, armature in kg m².

@@ -21,15 +21,6 @@ impl Robot {
         Self::load_locked(name_or_path, &[])
     }
 
-    /// Loads a robot from a URDF file, as [`Urdf::load`] does with default options.
-    ///
-    /// # Errors
-    ///
-    /// Returns the errors of [`Urdf::load`].
-    pub fn from_urdf(path: impl AsRef<Path>) -> Result<Self, RobotError> {
-        Ok(Urdf::load(path, &UrdfOptions::default())?.into_robot())
-    }
-
     /// Loads a robot as [`Robot::load`] does, with joints held at positions.
     ///
     /// # Errors

@@ -4,6 +4,7 @@ use crate::error::RobotError;
 use crate::joint_kind::JointKind;
 use core::fmt;
 use core::str::FromStr;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A request to hold a joint at a position. Its link then belongs to the link that carries it.
@@ -27,7 +28,7 @@ pub struct Lock {
 }
 
 /// A joint that is held at a position, as a description records it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LockedJoint {
     /// Name of the joint.

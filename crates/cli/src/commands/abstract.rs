@@ -7,7 +7,8 @@ use clap::Args;
 use reachtube::abstraction::{ModelKind, PolynomialModel};
 use reachtube::write;
 use reachtube_robot::JointKind;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::error::Result;
 use crate::expansion::expansion_point;
@@ -75,22 +76,42 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if args.print {
         output::print(&model.to_string())?;
     } else {
-        output::show(json, &json_summary(&model, seconds), || summary(&model, seconds))?;
+        output::show(json, &AbstractOutput::new(&model, seconds), || summary(&model, seconds))?;
     }
     Ok(Outcome::Done)
 }
 
-fn json_summary(model: &PolynomialModel, seconds: f64) -> serde_json::Value {
-    let terms: Vec<usize> = model.acceleration().iter().map(|f| f.term_count()).collect();
-    json!({
-        "model": model.kind(),
-        "order": model.order(),
-        "states": model.states(),
-        "variables": model.variable_names(),
-        "degree": model.degree(),
-        "terms": terms,
-        "seconds": seconds,
-    })
+/// The result of `abstract`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct AbstractOutput {
+    /// The paper's number of the model.
+    model: ModelKind,
+    /// Order of the model.
+    order: u32,
+    /// Number of states of the polynomial system.
+    states: usize,
+    /// Names of the variables.
+    variables: Vec<String>,
+    /// Degree of the polynomials.
+    degree: u32,
+    /// Number of terms of each joint.
+    terms: Vec<usize>,
+    /// Time that the model took, s.
+    seconds: f64,
+}
+
+impl AbstractOutput {
+    fn new(model: &PolynomialModel, seconds: f64) -> Self {
+        Self {
+            model: model.kind(),
+            order: model.order(),
+            states: model.states(),
+            variables: model.variable_names(),
+            degree: model.degree(),
+            terms: model.acceleration().iter().map(|f| f.term_count()).collect(),
+            seconds,
+        }
+    }
 }
 
 /// Returns the result of `abstract`, with one line per joint.

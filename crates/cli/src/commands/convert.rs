@@ -6,9 +6,10 @@ use clap::Args;
 use reachtube::number::four_decimals;
 use reachtube::recordings::LogSettings;
 use reachtube_logs::{
-    Cut, Cutting, Intervals, Log, LogOptions, RecordedRun, Repeats, convert, find_repeats,
+    Cut, Cutting, Intervals, Log, LogOptions, Loss, RecordedRun, Repeats, convert, find_repeats,
 };
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::error::Result;
 use crate::lock_arguments::LockArguments;
@@ -88,6 +89,17 @@ pub(crate) struct Arguments {
     pub out: PathBuf,
 }
 
+/// The result of `convert`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct ConvertOutput<'a> {
+    /// The recordings written, in the order of runs.csv.
+    recordings: &'a [RecordedRun],
+    /// Suites of repeated motions that were found; null without --repeats.
+    repeats: Option<&'a [Repeats]>,
+    /// Parts of the logs that could not be read, with --recover.
+    lost: Vec<&'a Loss>,
+}
+
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let options = options(args)?;
     output::claim(&args.out.join("runs.csv"))?;
@@ -110,7 +122,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         args.out.display()
     ));
     let lost: Vec<_> = logs.iter().flat_map(Log::losses).collect();
-    let result = json!({ "recordings": written, "repeats": found, "lost": lost });
+    let result = ConvertOutput { recordings: &written, repeats: found.as_deref(), lost };
     output::show(json, &result, || summary(&written, found.as_deref()))?;
     Ok(Outcome::Done)
 }

@@ -10,7 +10,8 @@ use reachtube::page::{Assets, Sources};
 use reachtube::recordings::{DataSet, Torque};
 use reachtube::{Model, write};
 use reachtube_robot::Robot;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::conform as conform_command;
 use crate::data_arguments::DataArguments;
@@ -117,14 +118,23 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let model = &opened.model;
     let outcome = Outcome::of_model(model.verified, model);
     if json {
-        output::print_json(&json!({
-            "nominal_cost": before.cost, "model": model, "held_out": held_out
-        }))?;
+        output::print_json(&DemoOutput { nominal_cost: before.cost, model, held_out: &held_out })?;
     } else {
         let text = text(&opened, &held_out, summary, &recorded, &pages[0]);
         output::print_verdict(&text, &outcome)?;
     }
     Ok(outcome)
+}
+
+/// The result of `demo`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct DemoOutput<'a> {
+    /// Cost of the sets of the model before its fit.
+    nominal_cost: f64,
+    /// The model.
+    model: &'a Model,
+    /// The check of the motions that were held out.
+    held_out: &'a Check,
 }
 
 /// Returns the answer about the model, and the one about motions that were held out.

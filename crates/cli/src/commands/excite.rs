@@ -7,7 +7,8 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use reachtube::write;
 use reachtube_robot::{Criterion, Excitation, ExcitationSettings, Parameter, ParameterKind, Robot};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
@@ -74,6 +75,19 @@ const MOST_HARMONICS: u64 = 1000;
 /// Usual length of one number in the CSV file with its comma, bytes.
 const BYTES_PER_VALUE: f64 = 11.0;
 
+/// The result of `excite`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct ExciteOutput {
+    /// Condition number of the base regressor along the motion.
+    #[schemars(with = "Option<f64>")]
+    condition: f64,
+    /// Condition number before the search.
+    #[schemars(with = "Option<f64>")]
+    condition_before: f64,
+    /// Period of the motion, s.
+    period: f64,
+}
+
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     output::claim(&args.out)?;
@@ -82,11 +96,11 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let found = robot.excitation(&parameters(n), &settings(args))?;
     write::atomically(&args.out, |out| write_csv(out, &found, n, args.rate))?;
     output::wrote(&args.out);
-    let values = json!({
-        "condition": found.quality.condition,
-        "condition_before": found.initial_quality.condition,
-        "period": args.period,
-    });
+    let values = ExciteOutput {
+        condition: found.quality.condition,
+        condition_before: found.initial_quality.condition,
+        period: args.period,
+    };
     output::show(json, &values, || summary(&found, &robot))?;
     Ok(Outcome::Done)
 }

@@ -8,6 +8,7 @@ use reachtube::write;
 
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
+use crate::schema::{SchemaOf, schema_of};
 use crate::{output, reference};
 
 const HELP: &str = "\
@@ -15,7 +16,9 @@ Examples:
   reachtube man | man -l -
   reachtube man --out ~/.local/share/man/man1
   reachtube man --markdown > docs/cli.md
-      the reference of the documentation";
+      the reference of the documentation
+  reachtube man --schema results
+      the JSON schema of what each command prints with --json";
 
 /// Print the manual page, or write one page for each command
 #[derive(Debug, Args)]
@@ -27,10 +30,16 @@ pub(crate) struct Arguments {
     /// Print all commands and their options as one page of Markdown
     #[arg(long, conflicts_with = "out")]
     pub markdown: bool,
+    /// Print the JSON schema of a model file, of an abstraction file, or of what each command
+    /// prints with --json
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["out", "markdown"])]
+    pub schema: Option<SchemaOf>,
 }
 
 pub(crate) fn run(args: &Arguments, command: Command) -> Result<Outcome> {
-    if args.markdown {
+    if let Some(what) = args.schema {
+        output::print_json(&schema_of(what))?;
+    } else if args.markdown {
         output::write_out(reference::markdown(built(command)).as_bytes())?;
     } else if let Some(folder) = &args.out {
         let pages = pages(command).map_err(Error::output)?;

@@ -8,7 +8,8 @@ use reachtube::identify::prepare::{
     read, windows,
 };
 use reachtube::recordings::{ColumnSettings, Torque, any_simulated};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
@@ -111,9 +112,18 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         args.out.display()
     ));
     if json {
-        output::print_json(&json!({ "cut_off": cut_off, "recordings": cut.windows.len() }))?;
+        output::print_json(&PrepareOutput { cut_off, recordings: cut.windows.len() })?;
     }
     Ok(Outcome::Done)
+}
+
+/// The result of `prepare`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct PrepareOutput {
+    /// Cut-off frequency of the low-pass, Hz.
+    cut_off: f64,
+    /// Number of recordings that were written.
+    recordings: usize,
 }
 
 /// Returns the error of windows that no recording fills.

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::conform::model::Provenance;
+use reachtube::conform::tube::Lost;
 use reachtube::conform::{Keep, Model, Stiction, SuiteReach, stiction};
 use reachtube::finding::{Finding, FrontEnd};
 use reachtube::page::{Sources, page};
 use reachtube::write;
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
@@ -39,6 +41,59 @@ pub(crate) struct Arguments {
     /// Folder for the CSV files and figures
     #[arg(long, value_name = "FOLDER", default_value = "reach")]
     pub out: PathBuf,
+}
+
+/// The result of `reach`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct ReachOutput<'a> {
+    /// One entry for each suite, or run with a nominal motion of its own.
+    reach: Vec<SetOutput<'a>>,
+    /// Joints whose velocity may be zero in a step of these sets.
+    stiction: Vec<RestOutput<'a>>,
+    /// What the sets are of.
+    #[serde(flatten)]
+    provenance: &'a Provenance,
+}
+
+/// A reachable set.
+#[derive(Serialize, JsonSchema)]
+struct SetOutput<'a> {
+    /// The suite.
+    suite: &'a str,
+    /// The run; null where all runs share their nominal motion.
+    run: Option<&'a str>,
+    /// Number of samples.
+    samples: usize,
+    /// Time of the last sample, s.
+    duration: Option<f64>,
+    /// Widths at the last sample, 2n, rad and rad/s.
+    final_width: Vec<f64>,
+    /// Where the set ended before its suite.
+    lost: Option<&'a Lost>,
+    /// File with the set at samples.
+    csv: String,
+    /// File with the set over each step.
+    tube_csv: String,
+}
+
+/// A joint whose velocity may be zero in a step.
+#[derive(Serialize, JsonSchema)]
+struct RestOutput<'a> {
+    /// Name of the joint.
+    joint: &'a str,
+    /// Number of steps in which the velocity may be zero.
+    steps: usize,
+    /// Largest difference between two values of dry friction in one of these steps, N m or N;
+    /// rounded up.
+    torque: f64,
+    /// Largest torque that U contains in both directions, N m or N; rounded down.
+    room: f64,
+    /// The suite or run in which the difference is the largest.
+    case: &'a str,
+    /// Start of the step in which it is the largest, s.
+    time: f64,
+    /// Whether U covers every dry friction that is possible there.
+    covered: bool,
 }
 
 /// The reachable set of a suite or run, and the files that hold it.
@@ -79,16 +134,11 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     report_files::write_figures(&page(&sources)?, &args.out)?;
     if json {
-        let rows: Vec<_> = written.iter().map(Written::json).collect();
-        let Provenance { tool, model_sha256, settings, data } = &check.provenance;
-        output::print_json(&json!({
-            "reach": rows,
-            "stiction": rests.iter().map(|rest| rest_json(model, rest)).collect::<Vec<_>>(),
-            "tool": tool,
-            "model_sha256": model_sha256,
-            "settings": settings,
-            "data": data,
-        }))?;
+        output::print_json(&ReachOutput {
+            reach: written.iter().map(Written::output).collect(),
+            stiction: rests.iter().map(|rest| RestOutput::new(model, rest)).collect(),
+            provenance: &check.provenance,
+        })?;
     } else {
         let kinds = model.drive.robot.kinds();
         let q = JointKind::any_unit(&kinds, JointKind::position_unit);
@@ -113,16 +163,18 @@ fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
     &model.drive.robot.joints[rest.joint - 1].name
 }
 
-fn rest_json(model: &Model, rest: &Stiction) -> serde_json::Value {
-    json!({
-        "joint": joint_of(model, rest),
-        "steps": rest.steps,
-        "torque": rest.torque,
-        "room": rest.room,
-        "case": rest.case,
-        "time": rest.time,
-        "covered": rest.is_covered(),
-    })
+impl<'a> RestOutput<'a> {
+    fn new(model: &'a Model, rest: &'a Stiction) -> Self {
+        Self {
+            joint: joint_of(model, rest),
+            steps: rest.steps,
+            torque: rest.torque,
+            room: rest.room,
+            case: &rest.case,
+            time: rest.time,
+            covered: rest.is_covered(),
+        }
+    }
 }
 
 /// Returns the dry friction of joints that may come to rest, beside U.
@@ -167,17 +219,17 @@ impl Written<'_> {
         (upper.len() - dimension..upper.len()).map(|at| upper[at] - lower[at]).collect()
     }
 
-    fn json(&self) -> serde_json::Value {
-        json!({
-            "suite": self.reach.suite,
-            "run": self.reach.run,
-            "samples": self.reach.times.len(),
-            "duration": self.reach.times.last(),
-            "final_width": self.final_width(),
-            "lost": self.reach.lost,
-            "csv": self.samples.display().to_string(),
-            "tube_csv": self.tube.display().to_string(),
-        })
+    fn output(&self) -> SetOutput<'_> {
+        SetOutput {
+            suite: &self.reach.suite,
+            run: self.reach.run.as_deref(),
+            samples: self.reach.times.len(),
+            duration: self.reach.times.last().copied(),
+            final_width: self.final_width(),
+            lost: self.reach.lost.as_ref(),
+            csv: self.samples.display().to_string(),
+            tube_csv: self.tube.display().to_string(),
+        }
     }
 
     fn row(&self) -> Vec<String> {

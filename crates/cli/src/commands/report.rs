@@ -6,7 +6,8 @@ use clap::{Args, ValueEnum};
 use reachtube::conform::Keep;
 use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, Sources};
-use serde_json::json;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
@@ -52,6 +53,13 @@ pub(crate) struct Arguments {
     pub assets: AssetsArgument,
 }
 
+/// The result of `report`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct ReportOutput {
+    /// Path of the page.
+    report: String,
+}
+
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim(&report_files::page_in(&args.out))?;
     let opened = OpenedCheck::new(&args.model, None, Keep::All)?;
@@ -61,7 +69,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         Sources { model, problem, reach: &reach, check: &check, front_end: FrontEnd::CommandLine };
     let page = report_files::write(&sources, args.assets.into(), &args.out)?;
     opened.print_notes(&args.model.data);
-    output::show(json, &json!({ "report": page.display().to_string() }), || {
+    output::show(json, &ReportOutput { report: page.display().to_string() }, || {
         format!("wrote {}\n", page.display())
     })?;
     Ok(Outcome::Done)

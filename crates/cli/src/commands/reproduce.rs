@@ -12,6 +12,7 @@ use reachtube::reproduce::{
     Claim, CoverageRow, Item, PaperFigure, ReproduceOptions, Reproduced, reproduce,
 };
 use reachtube::write;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::Result;
@@ -146,11 +147,15 @@ pub(crate) struct Table2Arguments {
 }
 
 /// The file of all numbers, which is printed with `--json` too.
-#[derive(Serialize)]
-struct Numbers<'a> {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Numbers<'a> {
+    /// The name of the format, "reachtube-paper".
     format: &'static str,
+    /// The version of the format.
     version: u32,
+    /// What the paper claims, and what was found.
     claims: &'a [Claim],
+    /// The numbers.
     #[serde(flatten)]
     computed: &'a Reproduced,
 }

@@ -2,8 +2,11 @@
 
 use clap::{Args, Subcommand};
 use nalgebra::DMatrix;
-use reachtube_robot::{Joint, JointDescription, JointKind, LockedJoint, Physicality, Robot};
-use serde_json::json;
+use reachtube_robot::{
+    Joint, JointDescription, JointKind, LockedJoint, Physicality, Robot, RobotDescription,
+};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::expansion::expansion_point;
@@ -46,6 +49,21 @@ pub(crate) struct ShowArguments {
     pub expansion: Vec<f64>,
 }
 
+/// The result of `robot show`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct RobotOutput<'a> {
+    /// The robot, as in a model file.
+    description: &'a RobotDescription,
+    /// Whether its links can exist, in words.
+    physical: &'a str,
+    /// The positions of mass matrix and torque, n, rad or m.
+    q: &'a [f64],
+    /// The mass matrix, by rows.
+    mass_matrix: Vec<Vec<f64>>,
+    /// The torque that gravity asks for, n, N m or N.
+    gravity_torque: Vec<f64>,
+}
+
 /// Runs `robot show`.
 pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
@@ -63,13 +81,13 @@ pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let mass = robot.mass_matrix(&at.q);
     let physical = physicality_sentence(&physicality, &robot);
     let rows: Vec<Vec<f64>> = mass.row_iter().map(|row| row.iter().copied().collect()).collect();
-    let values = json!({
-        "description": robot.description(),
-        "physical": physical,
-        "q": at.q,
-        "mass_matrix": rows,
-        "gravity_torque": robot.gravity_torque(&at.q).as_slice(),
-    });
+    let values = RobotOutput {
+        description: robot.description(),
+        physical: &physical,
+        q: &at.q,
+        mass_matrix: rows,
+        gravity_torque: robot.gravity_torque(&at.q).as_slice().to_vec(),
+    };
     output::show(json, &values, || {
         format!("{}{}\n{physical}\n", description(&robot), dynamics(&robot, &at.q, &mass))
     })?;

@@ -3,13 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::fixture::Lab;
-
-fn schema() -> jsonschema::Validator {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/abstraction.schema.json");
-    let schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-    jsonschema::draft202012::meta::validate(&schema).unwrap();
-    jsonschema::draft202012::new(&schema).unwrap()
-}
+use crate::output_schema::validator;
 
 /// The degrees and the counts of terms are computed by hand: model 1 of the LWA 4P has six terms in
 /// each of q̇, q̇², q̇³ and u per joint.
@@ -42,7 +36,7 @@ fn polynomials_are_printed() {
 
 #[test]
 fn files_fit_the_schema_and_conform_takes_them() {
-    let (schema, lab) = (schema(), Lab::new());
+    let (schema, lab) = (validator("abstraction"), Lab::new());
     let usual = lab.conform("--json").exits(0).json();
     for model in [1, 2, 3] {
         lab.run(&format!("abstract --robot arm.toml --paper-model {model} --out m{model}.json"))

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::fixture::{Lab, Run, SAMPLES, cell, robot_toml, sealed};
+use crate::output_schema::{complaints, validator};
 
 /// The arm of the recordings, but with cubic viscous friction.
 fn bent() -> Lab {
@@ -15,22 +16,6 @@ fn bent() -> Lab {
 
 fn conform(lab: &Lab, more: &str) -> Run {
     lab.run(&format!("conform --robot bent.toml --order 3 --data data --torque compensated {more}"))
-}
-
-fn schema() -> jsonschema::Validator {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/model.schema.json");
-    let schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-    jsonschema::draft202012::meta::validate(&schema).unwrap();
-    jsonschema::draft202012::new(&schema).unwrap()
-}
-
-#[track_caller]
-fn fits(schema: &jsonschema::Validator, model: &Value) {
-    let complaints: Vec<String> = schema
-        .iter_errors(model)
-        .map(|error| format!("{}: {error}", error.instance_path()))
-        .collect();
-    assert_eq!(complaints, Vec::<String>::new());
 }
 
 #[test]
@@ -48,7 +33,7 @@ fn a_nonlinear_model_goes_through_every_command() {
         assert!(run.stdout.contains(part), "{part:?} is not in\n{}", run.stdout);
     }
     let model: Value = serde_json::from_str(&lab.read("model.json")).unwrap();
-    fits(&schema(), &model);
+    assert_eq!(complaints(&validator("model"), &model), Vec::<String>::new());
     assert_eq!(
         (&model["proof"]["enclosure"], &model["settings"]["method"]),
         (&json!("outer"), &json!("program"))
@@ -88,7 +73,7 @@ fn bisection_is_a_baseline_that_costs_more() {
     let program = conform(&lab, "--json").exits(0).json();
     let run = conform(&lab, "--json --method bisection").exits(0).notes("radius 6 of 6");
     let bisection = run.json();
-    fits(&schema(), &bisection);
+    assert_eq!(complaints(&validator("model"), &bisection), Vec::<String>::new());
     let cost = |model: &Value| model["cost"].as_f64().unwrap();
     assert!(
         cost(&bisection) > 0.999 * cost(&program),

@@ -1,50 +1,63 @@
-//! What commands print with `--json` fits docs/output.schema.json.
+//! What commands print with `--json` fits the schema that `man --schema results` prints.
 
-use jsonschema::Registry;
+use std::sync::LazyLock;
+
 use reachtube::conform::Notion;
 use serde_json::{Value, json};
 
 use crate::fixture::Lab;
 use crate::provenance::names_what_it_is_of;
 
-fn read(file: &str) -> Value {
-    let path = format!("{}/../../docs/{file}", env!("CARGO_MANIFEST_DIR"));
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+/// Returns the JSON schema that `man --schema` prints.
+pub(crate) fn schema(of: &str) -> Value {
+    Lab::new().run(&format!("man --schema {of}")).exits(0).json()
 }
 
-/// Returns the schema of one command's output, which refers to the one of model files beside it.
-fn schema(name: &str) -> jsonschema::Validator {
-    let mut schema = read("output.schema.json");
-    let model = read("model.schema.json");
-    let beside =
-        Registry::new().add("json-schema:///model.schema.json", &model).unwrap().prepare().unwrap();
+/// Returns the validator of a JSON schema that `man --schema` prints.
+pub(crate) fn validator(of: &str) -> jsonschema::Validator {
+    let schema = schema(of);
     jsonschema::draft202012::meta::validate(&schema).unwrap();
-    schema["oneOf"] = json!([{ "$ref": format!("#/$defs/{name}") }]);
-    jsonschema::draft202012::options().with_registry(&beside).build(&schema).unwrap()
+    jsonschema::draft202012::new(&schema).unwrap()
+}
+
+/// Returns what does not fit a schema.
+pub(crate) fn complaints(schema: &jsonschema::Validator, value: &Value) -> Vec<String> {
+    schema.iter_errors(value).map(|error| format!("{}: {error}", error.instance_path())).collect()
+}
+
+/// Returns the schema of one command's output.
+fn schema_of_command(name: &str) -> jsonschema::Validator {
+    static RESULTS: LazyLock<Value> = LazyLock::new(|| schema("results"));
+    let mut schema = RESULTS.clone();
+    jsonschema::draft202012::meta::validate(&schema).unwrap();
+    schema["anyOf"] = json!([{ "$ref": format!("#/$defs/{name}") }]);
+    jsonschema::draft202012::new(&schema).unwrap()
 }
 
 #[test]
 fn the_schema_has_the_notions_of_the_command() {
     let names: Vec<&str> = Notion::NAMES.iter().map(|(name, _)| *name).collect();
-    assert_eq!(read("model.schema.json")["$defs"]["notion"]["enum"], json!(names));
-    for name in names {
-        let notion: Notion = serde_json::from_value(json!(name)).unwrap();
-        assert_eq!(json!(notion), json!(name));
+    let notions = schema("model")["$defs"]["Notion"]["oneOf"].as_array().unwrap().clone();
+    assert_eq!(notions.iter().map(|one| &one["const"]).collect::<Vec<_>>(), names);
+}
+
+#[test]
+fn the_schema_has_a_definition_for_each_command_and_words_for_each_field() {
+    let schema = schema("results");
+    for command in ["check", "model", "identify", "verify", "reproduce", "error"] {
+        let fields = schema["$defs"][command]["properties"].as_object().unwrap();
+        for (name, field) in fields {
+            let is_described = field.get("description").is_some() || field.get("$ref").is_some();
+            assert!(is_described, "{command}: {name}");
+        }
     }
 }
 
 /// Asserts that a value fits the schema of a command's output.
 #[track_caller]
 pub(crate) fn fits(name: &str, value: &Value) {
-    let schema = schema(name);
-    let complaints: Vec<String> = schema
-        .iter_errors(value)
-        .flat_map(|error| {
-            let text = format!("{}: {error}", error.instance_path());
-            [text, format!("{:?}", error.kind())]
-        })
-        .collect();
-    assert_eq!(complaints, Vec::<String>::new(), "{name}");
+    let schema = schema_of_command(name);
+    assert_eq!(complaints(&schema, value), Vec::<String>::new(), "{name}");
     // A schema that accepts everything would prove nothing.
     let mut more = value.clone();
     more["more"] = json!(1);

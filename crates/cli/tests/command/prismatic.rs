@@ -205,7 +205,7 @@ fn a_scara_conforms() {
         )
         .exits(0);
     contains(&run.stdout, &["conformant: 6 recordings", "] rad ", "] m ", "] m/s ", "] N\n"]);
-    fits_the_schema(&lab.read("scara.json"), "model.schema.json");
+    fits_the_schema(&lab.read("scara.json"), "model");
     let check = "check --model scara.json --data runs --torque motor";
     contains(&lab.run(check).exits(0).stdout, &["conformant: 6 recordings"]);
     // A value beyond the set is named with the unit of its joint.
@@ -235,7 +235,7 @@ fn a_nonlinear_model_of_a_scara_conforms() {
         .run("conform --abstraction two.json --data runs --torque motor --out scara.json -v")
         .exits(0);
     contains(&run.stdout, &["conformant: 6 recordings", "[-0.00101, 0.00101] m "]);
-    fits_the_schema(&lab.read("scara.json"), "model.schema.json");
+    fits_the_schema(&lab.read("scara.json"), "model");
     lab.run("check --model scara.json --data runs --torque motor").exits(0);
     let both = lab
         .run("conform --abstraction two.json --lock elbow=0 --data runs --torque motor")

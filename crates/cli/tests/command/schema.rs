@@ -3,21 +3,11 @@
 use serde_json::{Value, json};
 
 use crate::fixture::{Lab, sealed};
-
-fn schema() -> jsonschema::Validator {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/model.schema.json");
-    let schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-    jsonschema::draft202012::meta::validate(&schema).unwrap();
-    jsonschema::draft202012::new(&schema).unwrap()
-}
-
-fn complaints(schema: &jsonschema::Validator, model: &Value) -> Vec<String> {
-    schema.iter_errors(model).map(|error| format!("{}: {error}", error.instance_path())).collect()
-}
+use crate::output_schema::{complaints, validator};
 
 #[test]
 fn models_fit_the_schema() {
-    let (schema, lab) = (schema(), Lab::new());
+    let (schema, lab) = (validator("model"), Lab::new());
     lab.edit("data/runs.csv", |lines| {
         lines.iter_mut().for_each(|line| *line = line.replace("motion ", "M"));
     });
@@ -58,7 +48,7 @@ fn what_conform_prints_is_a_model_file_with_findings() {
 
 #[test]
 fn the_embedded_robot_fits_the_schema() {
-    let (schema, lab) = (schema(), Lab::new());
+    let (schema, lab) = (validator("model"), Lab::new());
     let mut model = lab.conform("--json").exits(0).json();
     model["drive"]["robot"] =
         lab.run("robot show lwa4p --json").exits(0).json()["description"].clone();
@@ -67,7 +57,7 @@ fn the_embedded_robot_fits_the_schema() {
 
 #[test]
 fn the_schema_refuses_what_the_program_refuses() {
-    let (schema, lab) = (schema(), Lab::new());
+    let (schema, lab) = (validator("model"), Lab::new());
     let model = lab.conform("--json").exits(0).json();
     let set = |path: &str, value: Value| {
         let mut changed = model.clone();

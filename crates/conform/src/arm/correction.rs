@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::condition::Condition;
@@ -7,7 +8,7 @@ use crate::data::condition::Condition;
 ///
 /// At each sample the correction is evaluated at the nominal state, and the corrected input is held
 /// until the next sample. The reachable set is the model's, around this nominal motion.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InputCorrection {
     /// Friction of each joint, n entries.
@@ -25,7 +26,7 @@ pub struct InputCorrection {
 
 /// The friction of one joint that is subtracted from the input. N in place of N m, m in place of
 /// rad for a prismatic joint.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointCorrection {
     /// Viscous friction quadratic in the velocity's offset from the expansion point,

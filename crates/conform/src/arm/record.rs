@@ -1,6 +1,7 @@
 use reachtube_abstraction::{PolynomialModel, Records, TermRecord};
 use reachtube_reach::System;
 use reachtube_robot::RobotDescription;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::arm::arm::Arm;
@@ -8,7 +9,7 @@ use crate::arm::correction::InputCorrection;
 use crate::arm::system::polynomials;
 
 /// What drives the system of a model: the robot, and what the file needs to make its model again.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DriveRecord {
     /// The robot. What else it has seen since, [`Model::robot`](crate::Model::robot) adds.

@@ -1,5 +1,6 @@
 //! The verdict: whether every recording lies in the reachable set, and where not.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::notion::judged;
@@ -16,7 +17,7 @@ use crate::tube::witness::Witness;
 
 /// Whether recordings lie in the interval hull of a model's reachable set, and where not. A row is
 /// the recordings of one suite at one time in one state (of one run, if it has a set of its own).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Verdict {
     /// Whether every row was proved to hold.
@@ -36,6 +37,7 @@ pub struct Verdict {
     pub points: Option<PointVerdict>,
     /// The largest excess of a row that has a reachable set, rad or rad/s: not above 0 when all
     /// rows hold.
+    #[schemars(with = "Option<f64>")]
     pub largest_excess: f64,
     /// Reachable sets that could not be followed to the end; the rows from there on do not hold.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -45,7 +47,7 @@ pub struct Verdict {
 }
 
 /// The verdict on one suite.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SuiteVerdict {
     /// The suite.
@@ -71,7 +73,7 @@ impl SuiteVerdict {
 }
 
 /// Rows that do not hold.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Violations {
     /// Their number.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use reachtube_recordings::State;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::notion::Notion;
@@ -18,7 +19,7 @@ const NAMED: f64 = 0.1;
 /// Whether recorded points lie in the reachable set itself, or in its projections on the phase
 /// planes, and where not. A point is the measured state of one run at one sample; it counts once
 /// for each phase plane.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointVerdict {
     /// In which directions points must lie in the set.
@@ -35,7 +36,7 @@ pub struct PointVerdict {
 }
 
 /// A recorded point outside the reachable set, with the combination of states that shows it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointWitness {
     /// The suite.

@@ -1,8 +1,9 @@
 use reachtube_recordings::Run;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What the drive of a system may depend on in one run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Condition {
     /// The run's place in the order of its suite, from 1.

@@ -1,12 +1,13 @@
 //! The notions of enclosure: their names, their words, and the states that are judged together.
 //! `claim/` proves them.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::part::Part;
 
 /// In which directions recordings must lie in the reachable set (docs/method.md, correction C).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Notion {
     /// Each state by itself: in the interval hull of the set, the paper's notion.

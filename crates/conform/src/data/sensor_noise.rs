@@ -1,5 +1,6 @@
 //! The noise of the sensors, which limits V and, where each run has its own nominal start, X0.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::recordings::Recordings;
@@ -10,7 +11,7 @@ use crate::data::suite::Suite;
 const DEVIATIONS: f64 = 5.0;
 
 /// The noise of the sensors.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SensorNoise {
     /// Its radius in each state, 2n, rad and rad/s.

@@ -5,13 +5,14 @@ use std::ops::RangeInclusive;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{GapLimit, Torque};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::notion::Notion;
 use crate::error::{Error, Result};
 
 /// How the smallest sets are found (docs/method.md, correction K).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
     /// By linear programs over all suites: one program for a linear model; a sequence of them for
@@ -24,7 +25,7 @@ pub enum Method {
 }
 
 /// Where the centres of the sets may lie (docs/method.md, correction B).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Centre {
     /// Anywhere.
@@ -37,7 +38,7 @@ pub enum Centre {
 }
 
 /// Which states must be enclosed. The cost counts all of them in any case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum States {
     /// Positions and velocities ("velocity conformant" in Table II).
@@ -79,7 +80,7 @@ impl States {
 
 /// How far X0 may reach, to the accuracy of the solver and of the repair after it. Where each run
 /// starts at its own measured state, the noise of the sensors limits X0 in any case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum InitialLimit {
     /// By the amount that makes the sets cheapest: X0 may take over what U would have to cover
@@ -94,7 +95,7 @@ pub enum InitialLimit {
 }
 
 /// Where the nominal motion of a run starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum NominalStart {
     /// At the mean of the first states of the suite's runs.
@@ -106,7 +107,7 @@ pub enum NominalStart {
 }
 
 /// Whose equations of motion the nominal motions satisfy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Equations {
     /// The model's: U covers the model error.
@@ -119,7 +120,7 @@ pub enum Equations {
 
 /// The measurement noise: a set V of the measured state, centred at 0, that is added to the
 /// reachable set where runs are compared with it.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Noise {
     /// No noise: X0 and U explain every deviation.
@@ -134,7 +135,7 @@ pub enum Noise {
 
 /// How the states are weighed against each other in the cost (docs/method.md, correction F: rad and
 /// rad/s are otherwise added as they are).
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Weights {
     /// 1 for each state.
@@ -155,7 +156,7 @@ impl Weights {
 }
 
 /// Everything that decides a conformance result besides robot and recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// The kind of the recorded torques.

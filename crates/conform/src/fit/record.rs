@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::group::Group;
@@ -6,7 +7,7 @@ use crate::fit::group::Group;
 pub(crate) const MOST_ERRORS: f64 = 3.0;
 
 /// How the nominal model was fitted, for people and for the model file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FitRecord {
     /// The weight of the pull toward the identified values, in parts of the identified model's cost
@@ -51,7 +52,7 @@ fn taken() -> bool {
 }
 
 /// Gain of a group of parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroupCost {
     /// The group.
@@ -63,7 +64,7 @@ pub struct GroupCost {
 }
 
 /// A fit without one motion.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UnseenMotion {
     /// The motion.
@@ -112,7 +113,7 @@ pub(crate) fn mean_of(
 }
 
 /// A weight of the pull that was tried.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PullCost {
     /// The weight.
@@ -203,7 +204,7 @@ pub(crate) enum Overfit {
 }
 
 /// A parameter before and after.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FittedParameter {
     /// Its group.
@@ -248,7 +249,7 @@ impl FittedParameter {
 }
 
 /// The error of the predicted input of one joint along the recordings, N m.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TorquePrediction {
     /// The joint, from 1.

@@ -9,6 +9,7 @@ use reachtube_files::{json, write};
 use reachtube_reach::{Hyperrectangle, LinearSystem};
 use reachtube_recordings::Preparation;
 use reachtube_robot::RobotDescription;
+use schemars::JsonSchema;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -39,7 +40,7 @@ use crate::tube::witness::Witness;
 pub(crate) const FORMAT: &str = "reachtube-model";
 
 /// The version of the format that this library writes and reads; the schema is
-/// `docs/model.schema.json`.
+/// what `reachtube man --schema model` prints.
 pub(crate) const VERSION: u32 = 4;
 
 const REMEDY: &str = "give a file that `model` or `conform` wrote, such as arm/model.json";
@@ -50,12 +51,14 @@ pub(crate) const MOST_TIGHT: usize = 500;
 
 /// A model with the uncertainty sets for which it is reachset conformant with the recordings named
 /// in it. SI units; states are ordered q then q̇.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Model {
     /// The name of the format, "reachtube-model".
+    #[schemars(extend("const" = FORMAT))]
     pub format: String,
     /// The version of the format.
+    #[schemars(extend("const" = VERSION))]
     pub version: u32,
     /// Name and version of the program that wrote the file.
     pub tool: String,
@@ -66,6 +69,7 @@ pub struct Model {
     /// file without `cost_of_samples` are sums over samples, as versions before it wrote. `None`
     /// where a reachable set was lost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(required)]
     pub cost: Option<f64>,
     /// The cost as the paper sums it: over distinct sample times, each of which counts 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -164,6 +168,7 @@ pub struct Model {
     /// The findings that the command prints beside the model. They follow from the rest and are
     /// not read.
     #[serde(default, skip_serializing)]
+    #[schemars(skip)]
     pub(crate) findings: IgnoredAny,
     /// SHA-256 of the rest of the file's content, so that a change is noticed.
     pub sha256: String,

@@ -1,5 +1,6 @@
 //! The origin of an answer.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data::problem::Problem;
@@ -8,7 +9,7 @@ use crate::model::file::Model;
 use crate::model::records::DataRecord;
 
 /// The origin of an answer: the model, the settings in force, and each recording by its digest.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Provenance {
     /// Name and version of the program.
     pub tool: &'static str,

@@ -1,11 +1,12 @@
 use reachtube_robot::JointKind;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::result::code::Code;
 use reachtube_finding::{Finding, Severity};
 
 /// The kind of a fault that makes motion unlike healthy motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
     /// A torque that acts on a joint suddenly, as a collision's does, N m.
@@ -23,7 +24,7 @@ pub enum Fault {
 /// None for a single alarm: it is calibrated, not proved.
 /// [`HealthyMotion::bound`](crate::monitor::HealthyMotion::bound) bounds how often healthy motion
 /// raises one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Alarm {
     /// Time of the sample, s.
     pub time: f64,

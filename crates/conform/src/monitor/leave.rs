@@ -1,10 +1,11 @@
 use reachtube_recordings::State;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data::side::Side;
 
 /// A measured value outside the reachable set of a window.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Leave {
     /// Time of the sample, s, as it was given; interpolated samples lie between.
     pub time: f64,
@@ -20,6 +21,7 @@ pub struct Leave {
     pub value: f64,
     /// How far outside the reachable set, rad or rad/s; an upper bound, infinite if the nominal
     /// motion diverged.
+    #[schemars(with = "Option<f64>")]
     pub excess: f64,
     /// Radius of the reachable set there with V, rad or rad/s.
     pub radius: f64,

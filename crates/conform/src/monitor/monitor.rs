@@ -2,6 +2,7 @@ use std::sync::Arc;
 
 use reachtube_reach::{Propagation, TimeGrid};
 use reachtube_recordings::{EvenSamples, Sample, SampleError};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data::live_input::LiveInput;
@@ -93,7 +94,7 @@ struct Judge {
 }
 
 /// How many samples, windows and rows there were.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, JsonSchema)]
 pub struct Totals {
     /// Samples at even times.
     pub samples: u64,

@@ -1,4 +1,5 @@
 use reachtube_scalar::ExactSum;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::notion::claim;
@@ -12,7 +13,7 @@ use crate::sets::UncertaintySets;
 
 /// The smallest sets of a model whose friction depends on the run, that hold for every run: the
 /// nominal motion is taken in one condition in the middle.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AnyRun {
     /// The condition that the nominal motion is computed for.

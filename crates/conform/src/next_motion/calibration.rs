@@ -2,6 +2,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use reachtube_recordings::matching;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::look::Look;
@@ -26,7 +27,7 @@ use reachtube_finding::Advice;
 
 /// Sets that were found on some motions and then scaled so that they enclose the others, which were
 /// held out: split conformal calibration.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Calibration {
     /// The motions that the sets were found on.
@@ -52,7 +53,7 @@ impl Calibration {
 }
 
 /// The gauge of a motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gauge {
     /// The motion.

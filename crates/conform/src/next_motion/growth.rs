@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data::problem::Problem;
@@ -7,7 +8,7 @@ use crate::sets::UncertaintySets;
 
 /// Factors by which each set alone must grow, so that a model encloses recordings that leave its
 /// sets. Not proved: to rounding, with the centres where they are.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Growth {
     /// Factor of all radii of X0, for a linear model. `None` if no factor suffices.
     pub initial_set: Option<f64>,

@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
@@ -13,7 +14,7 @@ const DEVIATIONS: f64 = 2.6;
 
 /// A joint whose motion follows the order of the runs of a suite: the robot changed while it was
 /// recorded, for example by warming up.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Trend {
     /// The suite.

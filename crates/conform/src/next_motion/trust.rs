@@ -6,6 +6,7 @@
 use std::collections::BTreeSet;
 
 use reachtube_scalar::number::counted;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::claim::verdict::Verdict;
@@ -22,7 +23,7 @@ use crate::tube::witness::Witness;
 pub const CONFIDENCE: f64 = 0.95;
 
 /// Kinds of statements about motions that were not recorded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum TrustKind {
     /// It holds for all distributions of motions that satisfy the assumption of its basis.
@@ -34,7 +35,7 @@ pub enum TrustKind {
 }
 
 /// A statement about the next motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Trust {
     /// Number of independent motions in the data.

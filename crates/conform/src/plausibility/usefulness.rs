@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
@@ -22,7 +23,7 @@ const SMALLEST: f64 = 1e-6;
 
 /// Width of the sets beside the motion of each joint. Sets that were proved to enclose every
 /// recording may be so wide that they imply nothing; the model is then vacuous.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Usefulness {
     /// The end of the longest recording, s, to which the widths belong.
@@ -35,7 +36,7 @@ pub struct Usefulness {
 }
 
 /// The reachable set of a joint's position at the end of the recordings.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointWidth {
     /// Half the width of the set with V, rad (m); `None` if the reachable set was lost.
@@ -46,7 +47,7 @@ pub struct JointWidth {
 }
 
 /// A vacuous set of one joint.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Vacuity {
     /// The joint, from 1.
@@ -61,7 +62,7 @@ pub(crate) struct Vacuity {
 }
 
 /// Which set is vacuous.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum VacuousSet {
     /// The reachable set of the position.

@@ -4,6 +4,7 @@ use reachtube_recordings::State;
 use reachtube_robot::JointKind;
 use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::interval;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data::settings::Equations;
@@ -16,6 +17,17 @@ use reachtube_finding::{Finding, Report, Section, Table};
 
 /// Largest number of touching values in the table.
 const MOST_PLACES: usize = 6;
+
+/// A model, as its file has it, with its findings.
+#[derive(Serialize, JsonSchema)]
+struct Printed<'a> {
+    /// The model.
+    #[serde(flatten)]
+    model: &'a Model,
+    /// What the answer says, statement by statement: the verdict first. The file is without them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    findings: Vec<Finding>,
+}
 
 impl Model {
     /// Returns what the answer says, statement by statement: the verdict first, and last what must
@@ -32,13 +44,13 @@ impl Model {
     /// the command prints it. It can be read as a model file.
     #[must_use]
     pub fn to_json_with_findings(&self) -> String {
-        #[derive(Serialize)]
-        struct Printed<'a> {
-            #[serde(flatten)]
-            model: &'a Model,
-            findings: Vec<Finding>,
-        }
         reachtube_files::json::to_lines(&Printed { model: self, findings: self.findings() })
+    }
+
+    /// Returns the JSON schema of a model file, with or without findings beside the model.
+    #[must_use]
+    pub fn schema() -> serde_json::Value {
+        reachtube_files::schema::<Printed<'_>>()
     }
 
     /// Returns the answer for people. A table of the sets is like Table II of the paper.

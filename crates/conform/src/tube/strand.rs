@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use reachtube_reach::{Flowpipe, FlowpipeOutcome, ReachSets, TimeGrid};
 use reachtube_recordings::State;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::case::Case;
@@ -13,7 +14,7 @@ use crate::tube::grids::Grid;
 
 /// A reachable set that could not be followed to the end: the model may diverge under its
 /// uncertainty or without any, or the enclosure grew too wide.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lost {
     /// The suite, and the run if it has an input of its own.

@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
@@ -8,7 +9,7 @@ use crate::tube::rows::{RecordedBounds, Row, rows};
 use crate::tube::strand::{Lost, Strand};
 
 /// The reachable set that recordings are compared with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Enclosure {
     /// The hull of the set, taken from inside: a value in it is reachable in that state.

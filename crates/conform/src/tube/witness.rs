@@ -1,4 +1,5 @@
 use reachtube_recordings::State;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::problem::Problem;
@@ -6,7 +7,7 @@ use crate::data::side::Side;
 use crate::tube::rows::{Edge, Row};
 
 /// A recorded value at the edge of the reachable set or beyond it, in the words of the recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Witness {
     /// The suite.

@@ -6,6 +6,7 @@ use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
 use reachtube_robot::friction::Viscous;
 use reachtube_robot::{Parameter, ParameterKind, Robot};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Weight of the prior of friction that must rise, in squared standard deviations: rounding only.
@@ -16,7 +17,7 @@ const RANK_TOLERANCE: f64 = 1e-7;
 
 /// Viscous friction by least squares that falls with speed below a speed that the joint may reach.
 /// Friction that rises up to there was used in its place.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FallingFriction {
     /// Name of the joint.
     pub joint: String,

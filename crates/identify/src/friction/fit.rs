@@ -10,6 +10,7 @@ use crate::regression::solution::Solution;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::DVector;
 use reachtube_robot::{FrictionDescription, Robot};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::convert::Infallible;
 
@@ -20,7 +21,7 @@ const ROUNDS: usize = 4;
 const MIN_SAMPLES: usize = 50;
 
 /// The fitted friction of one joint.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct JointFriction {
     /// Name of the joint.
     pub joint: String,
@@ -39,6 +40,7 @@ pub struct JointFriction {
     /// Root mean square of the residuals \[N m\].
     pub residual: f64,
     /// Condition number of the regression, columns scaled to unit length.
+    #[schemars(with = "Option<f64>")]
     pub condition: f64,
     /// Inertia about the joint, which is fitted together with friction \[kg m²\].
     pub inertia: f64,

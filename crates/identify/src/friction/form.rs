@@ -1,5 +1,6 @@
 use crate::friction::sample::{FrictionSample, quadrant_counts};
 use reachtube_robot::FrictionDescription;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Share of a joint's samples that a quadrant must exceed to be fitted.
@@ -15,7 +16,7 @@ const LOAD_RANGE: f64 = 0.3;
 const OTHER_COLUMNS: usize = 4;
 
 /// The dependence of Coulomb friction on the load.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum CoulombForm {
     /// A line in the load for each of the four quadrants, (6) to (9).

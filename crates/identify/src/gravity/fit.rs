@@ -8,6 +8,7 @@ use crate::stiction::{KnownFriction, Rests};
 use crate::variant::with_parameters;
 use nalgebra::DMatrix;
 use reachtube_robot::{BaseParameters, Parameter, ParameterKind, Regressor, Robot};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Poses per combination of gravity parameters that make slow motions unnecessary for gravity.
@@ -23,7 +24,7 @@ const MOTION_COLUMNS: [ParameterKind; 5] = [
 ];
 
 /// Gravity as fitted to poses at rest and to slow motions.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct GravityFit {
     /// Number of poses at rest.
     pub rests: usize,

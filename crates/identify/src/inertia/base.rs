@@ -4,6 +4,7 @@ use crate::regression::singular::Singular;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
 use reachtube_robot::{BaseParameters, Robot};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Part of a parameter's variance over the reference motion that may lie in undetermined
@@ -11,7 +12,7 @@ use serde::Serialize;
 const MIN_OPEN: f64 = 0.0025;
 
 /// A base parameter: an identifiable combination of parameters, with its value in SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BaseParameter {
     /// The combination, such as `Ixx2 - Iyy2 + Izz2 + J2`.
     pub name: String,
@@ -20,6 +21,7 @@ pub struct BaseParameter {
     /// Value by least squares.
     pub least_squares: f64,
     /// Standard error of the least-squares value; infinite if the recordings do not determine it.
+    #[schemars(with = "Option<f64>")]
     pub standard_error: f64,
     /// Value in the given description.
     pub described: f64,

@@ -5,6 +5,7 @@ use crate::regression::singular::Singular;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
 use reachtube_robot::{Parameter, Regressor, Robot};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Positions at which the mass matrix is looked at, at most.
@@ -21,13 +22,14 @@ const LARGEST_ERROR: f64 = 0.5;
 
 /// The inertia that a joint feels: its entry of the diagonal of the mass matrix, as mean over
 /// recorded positions.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct JointInertia {
     /// Name of the joint.
     pub joint: String,
     /// The inertia by least squares \[kg m²; kg for a prismatic joint\].
     pub least_squares: f64,
     /// Its standard error; infinite if the recordings do not determine it.
+    #[schemars(with = "Option<f64>")]
     pub standard_error: f64,
 }
 

@@ -13,6 +13,7 @@ use crate::settings::{ModelSettings, Prior};
 use crate::variant::with_parameters;
 use nalgebra::DVector;
 use reachtube_robot::{FrictionDescription, Parameter, ParameterKind, Robot, RobotError};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Limit of the rounds in which the size of the balls is adapted.
@@ -28,7 +29,7 @@ const FIRST_SHARE: f64 = 0.1;
 const MAX_GROWTH: f64 = 1.3;
 
 /// Effect of the constraint that every link is physically consistent.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct PhysicalFit {
     /// Reason why least squares gives no physical robot.
     ///

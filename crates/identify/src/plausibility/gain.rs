@@ -4,6 +4,7 @@ use crate::regression::triangular_factor::TriangularFactor;
 use crate::samples::Samples;
 use nalgebra::{DMatrix, DVector};
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Deviation of a gain from 1 beyond which it is implausible.
@@ -22,13 +23,14 @@ const MAX_STEPS: usize = 100;
 ///
 /// It follows from the dynamics: a link's mass and inertia act on its own joint and on all joints
 /// before it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Gain {
     /// Name of the joint.
     pub joint: String,
     /// Factor by which the recorded torque must be multiplied to agree with the other joints.
     pub gain: f64,
     /// Standard error of the gain; infinite if the joint has no effect on the others' torque.
+    #[schemars(with = "Option<f64>")]
     pub standard_error: f64,
 }
 

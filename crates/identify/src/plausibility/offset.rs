@@ -6,6 +6,7 @@ use crate::samples::{KnownTorque, Samples, Sampling};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
 use reachtube_robot::{BaseParameters, Parameter, Robot};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Largest number of samples with which offsets are estimated.
@@ -40,7 +41,7 @@ const CLEAR: f64 = 3.0;
 const ROUNDS: usize = 3;
 
 /// The offset of a joint's position that explains the torque best, if no other joint has one.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PositionOffset {
     /// Name of the joint.
     pub joint: String,

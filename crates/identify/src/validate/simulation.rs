@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use reachtube_ode::{Ensemble, InitialValueProblem};
 use reachtube_robot::{DrivenBy, Robot, RobotField};
 use reachtube_scalar::Lanes;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Limit of the windows of one length in one log.
@@ -23,7 +24,7 @@ const SIMULATION_STEP: f64 = 2e-3;
 const DIVERGED: f64 = 1e3;
 
 /// Errors of motion simulated over windows of one length.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WindowErrors {
     /// Duration of a window \[s\].
     pub duration: f64,

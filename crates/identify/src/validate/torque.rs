@@ -3,6 +3,7 @@ use crate::prepare::log::PreparedLog;
 use crate::regression::residuals::root_mean_square;
 use crate::samples::{KnownTorque, Samples, Sampling};
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use std::ops::Range;
 const MOST_TRACES: usize = 64;
 
 /// Error of the predicted torque of one joint in one recording.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct JointError {
     /// Root mean square of the recorded torque while the joint moves \[N m\].
     pub torque: f64,
@@ -31,7 +32,7 @@ pub struct JointError {
 }
 
 /// Errors of the predicted torque in one validation recording.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LogValidation {
     /// Name of the recording; "all" stands for all of them together.
     pub log: String,

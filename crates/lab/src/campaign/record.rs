@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use rayon::prelude::*;
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::folder::{Folder, index_line};
@@ -15,7 +16,7 @@ use crate::error::Result;
 use crate::virtual_robot::{SuiteRuns, VirtualRobot};
 
 /// What a campaign has recorded.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct RecordedCampaign {
     /// Number of test suites.
     pub suites: usize,

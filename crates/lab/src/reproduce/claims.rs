@@ -3,6 +3,7 @@
 use reachtube_abstraction::ModelKind;
 use reachtube_conform::Notion;
 use reachtube_conform::settings::States;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::coverage::{Coverage, CoverageRow};
@@ -23,7 +24,7 @@ const SAME_ENTRY: f64 = 2.0;
 const LARGEST_DEVIATION: f64 = 4.0;
 
 /// A statement of the paper, or of a bound, and what came out.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Claim {
     /// The table or figure.
     pub place: String,

@@ -8,6 +8,7 @@ use reachtube_conform::next_motion::CONFIDENCE;
 use reachtube_conform::{Check, Model, Problem, Silent, Tube, Verdict, conform};
 use reachtube_recordings::MemoryRuns;
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::chosen_model::{self, Choice};
@@ -27,7 +28,7 @@ const HELD_OUT: usize = 15;
 const CALIBRATING: usize = 19;
 
 /// The virtual campaigns.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CoverageOptions {
     /// Number of campaigns.
     pub campaigns: usize,
@@ -45,7 +46,7 @@ impl Default for CoverageOptions {
 }
 
 /// How often one statement about the next motion was wrong.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CoverageRow {
     /// The statement.
     pub statement: String,
@@ -84,7 +85,7 @@ impl CoverageRow {
 }
 
 /// Nominal and observed rates of each bound.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Coverage {
     /// The options of the campaigns.
     pub options: CoverageOptions,

@@ -5,6 +5,7 @@ use std::path::Path;
 use reachtube_identify::{FrictionFit, Identification};
 use reachtube_recordings::{DataSet, ReadOptions, Run, RunSource};
 use reachtube_robot::JointKind;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::ReproduceError;
@@ -25,7 +26,7 @@ const SET: [u8; 3] = [140, 149, 159];
 const PLANNED: [u8; 3] = [31, 35, 40];
 
 /// A figure of the paper, drawn again.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct PaperFigure {
     /// Its number in the paper.
     pub number: u8,

@@ -1,10 +1,11 @@
 //! The numbers printed in Tables I and II of the paper, and the speeds of Table I.
 
 use reachtube_abstraction::ModelKind;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The speed of the robot along its paths.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Speed {
     /// Each joint peaks at a third of its speed limit: 0.4 rad/s for the LWA 4P.
@@ -35,7 +36,7 @@ impl Speed {
 }
 
 /// An entry of Table I in the paper.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Paper {
     /// Mean velocity error \[rad/s\].
@@ -63,7 +64,7 @@ impl Paper {
 }
 
 /// A half of Table II in the paper: the bounds of each joint.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct PaperSets {
     /// X0, positions \[rad\].
     pub x0_q: [[f64; 2]; 6],

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use reachtube_conform::{Notion, Progress};
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::claims::Claim;
@@ -55,9 +56,7 @@ impl Item {
         Self::Coverage,
     ];
 
-    /// Returns whether the item is computed of recordings.
-    #[must_use]
-    pub fn needs_recordings(self) -> bool {
+    fn needs_recordings(self) -> bool {
         !matches!(self, Self::Table1 | Self::Coverage)
     }
 }
@@ -104,7 +103,7 @@ impl ReproduceOptions {
 }
 
 /// The computed tables and figures.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 pub struct Reproduced {
     /// Table I.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use rayon::prelude::*;
 use reachtube_abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::ReproduceError;
@@ -17,7 +18,7 @@ use crate::motion::Motion;
 use crate::random::{SeedableRng, SplitMix64};
 
 /// The simulations of Table I.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Table1Options {
     /// Number of random motions.
     pub motions: usize,
@@ -42,7 +43,7 @@ impl Default for Table1Options {
 }
 
 /// A model of one order at one speed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Cell {
     /// The model.
     pub model: ModelKind,
@@ -66,13 +67,14 @@ pub struct Cell {
 }
 
 /// Table I.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Table1 {
     /// Name of the robot.
     pub robot: String,
     /// The options of the simulations.
     pub options: Table1Options,
     /// Durations of the slow and the fast motions \[s\].
+    #[schemars(with = "[Option<f64>; 2]")]
     pub durations: [f64; 2],
     /// The cells: for each order each model, for each model slow and fast.
     pub cells: Vec<Cell>,

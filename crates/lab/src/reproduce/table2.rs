@@ -9,13 +9,14 @@ use reachtube_conform::{
 use reachtube_reach::{Disturbance, Hyperrectangle};
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::paper::{PAPER_POSITIONS, PAPER_VELOCITIES, PaperSets};
 use crate::error::Result;
 
 /// What Table II is made of.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Table2Options {
     /// The suites; all if none is named.
     pub suites: Vec<String>,
@@ -42,7 +43,7 @@ impl Default for Table2Options {
 }
 
 /// One half of Table II in one notion: the smallest sets of model 1, p = 1, of the LWA 4P.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Table2Case {
     /// Which states had to be enclosed: all of them ("velocity conformant"), or positions
     /// ("position conformant").
@@ -68,7 +69,7 @@ pub struct Table2Case {
 }
 
 /// Table II.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Table2 {
     /// The options.
     pub options: Table2Options,

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use reachtube_identify::prepare::{LogEntry, VelocitySource};
 use reachtube_identify::{BaseParameter, Identification, IdentifySettings, identify};
 use reachtube_robot::{BaseParameters, Parameter, ParameterKind, Robot};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::error::ReproduceError;
@@ -17,7 +18,7 @@ use crate::virtual_robot::VirtualRobotParameters;
 const ROUNDING: f64 = 1e-9;
 
 /// A part of Table III.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Part {
     /// Friction parameters.
@@ -30,7 +31,7 @@ pub(crate) enum Part {
 
 /// What the virtual arm does and the model of Table III cannot show. It moves estimates away from
 /// the truth, and no number of recordings brings them closer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Effect {
     /// Dry friction rises toward standstill; the law without this rise is higher elsewhere.
@@ -46,7 +47,7 @@ pub(crate) enum Effect {
 }
 
 /// A row of Table III.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub(crate) struct Table3Row {
     /// The part of the table.
     pub part: Part,
@@ -68,7 +69,7 @@ pub(crate) struct Table3Row {
 }
 
 /// Table III.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Table3 {
     /// Number of static poses.
     pub poses: usize,

@@ -1,15 +1,17 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// An axis-aligned box {c + d : |d_i| <= r_i} with centre c and radius r >= 0.
 ///
 /// Its image under a matrix E has the centre E c and the radius |E| r, whatever the signs in E
 /// (docs/method.md, correction A).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hyperrectangle {
     /// Centre c, one entry per dimension.
     pub centre: Vec<f64>,
     /// Radius r, one entry >= 0 per dimension.
+    #[schemars(inner(range(min = 0.0)))]
     pub radius: Vec<f64>,
 }
 

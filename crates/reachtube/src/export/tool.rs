@@ -1,5 +1,6 @@
 use std::fmt;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A tool that computes reachable sets.
@@ -21,7 +22,7 @@ pub enum Tool {
 }
 
 /// How the recorded input enters an exported model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum InputForm {
     /// The recorded input, held from sample to sample, plus U.

@@ -1,7 +1,8 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Which times the samples of a log have.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum LogTime {
     /// The stamps in the headers of the messages.
     #[default]
@@ -14,7 +15,7 @@ pub enum LogTime {
 
 /// Topics, joints and times of MCAP and rosbag2 logs, if the logs are ambiguous: the table `log` of
 /// the settings.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LogSettings {
     /// Topics with joint states; empty for the only one that names joints of the robot.

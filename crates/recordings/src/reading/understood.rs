@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::assignment::{Assignment, TorqueKind};
@@ -8,7 +9,7 @@ use super::recognise::Units;
 use crate::run::Run;
 
 /// The interpretation of a log.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Understood {
     /// Paths of its files.
     pub files: Vec<String>,

@@ -3,10 +3,13 @@
 use std::f64::consts::PI;
 use std::str::FromStr;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A unit of the time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 pub enum TimeUnit {
     /// Seconds.
     #[serde(rename = "s")]
@@ -56,7 +59,7 @@ impl FromStr for TimeUnit {
 }
 
 /// A unit of angles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum AngleUnit {
     /// Radians.
     #[serde(rename = "rad")]

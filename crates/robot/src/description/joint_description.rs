@@ -12,10 +12,11 @@ use crate::joint_kind::JointKind;
 use crate::placement::Placement;
 use core::f64::consts::PI;
 use nalgebra::{Matrix3, Rotation3, Vector3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A Denavit-Hartenberg convention.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Convention {
     /// Rz(q + theta) Tz(d) Tx(a) Rx(alpha).
@@ -28,7 +29,7 @@ pub enum Convention {
 /// Denavit-Hartenberg parameters.
 ///
 /// Angles within 1e-12 rad of a multiple of pi/2 are taken as exactly that multiple.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dh {
     /// Link length \[m\].
@@ -43,7 +44,7 @@ pub struct Dh {
 
 /// The placement of a joint frame in the frame of the previous link; the default of each part is
 /// the identity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlacementDescription {
     /// Rotation matrix from child to parent, row by row.
@@ -58,7 +59,7 @@ pub struct PlacementDescription {
 }
 
 /// The reference point of an inertia tensor.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum InertiaPoint {
     /// The link's centre of mass.
@@ -70,7 +71,7 @@ pub enum InertiaPoint {
 
 /// Mass moments that only gravity acts on, for robots whose gravity parameters were identified
 /// separately from the inertial ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GravityMoments {
     /// Mass \[kg\].
@@ -80,7 +81,7 @@ pub struct GravityMoments {
 }
 
 /// Friction coefficients of a joint, (5) to (9).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionDescription {
     /// Coulomb coefficients a1 to a8: offset \[N m\] and slope of driving forward, driving
@@ -108,7 +109,7 @@ pub struct FrictionDescription {
 }
 
 /// Standard errors of identified friction, in the units of the coefficients; 0 if one is unknown.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrictionErrors {
     /// Standard errors of a1 to a8.
@@ -165,7 +166,7 @@ impl FrictionDescription {
 ///
 /// The link's frame is the joint frame moved by q (`placement`), or the Denavit-Hartenberg frame
 /// of the link (`dh`).
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JointDescription {
     /// The joint's name, unique in the robot.

@@ -3,6 +3,7 @@
 use super::joint_description::{Convention, JointDescription};
 use crate::joint_kind::JointKind;
 use crate::lock::LockedJoint;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -31,7 +32,7 @@ pub const SCHEMA_VERSION: u32 = 1;
 /// let robot = Robot::from_toml(pendulum, "pendulum.toml").unwrap();
 /// assert!((robot.mass_matrix(&[0.3])[(0, 0)] - 0.5).abs() < 1e-15);
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotDescription {
     /// Version of the format: [`SCHEMA_VERSION`].
@@ -80,7 +81,7 @@ fn earth_gravity() -> [f64; 3] {
 }
 
 /// The meaning of the inertial parameters of the links.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum ParameterSet {
     /// Each link is a body: its mass and inertia must belong to some distribution of mass.

@@ -1,6 +1,7 @@
 //! The Stribeck effect: dry friction that rises toward standstill, or saturates with speed.
 
 use reachtube_scalar::Lanewise;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The rise of dry friction toward standstill (Stribeck effect), added to Coulomb friction:
@@ -19,7 +20,7 @@ use serde::{Deserialize, Serialize};
 /// assert!((rise.torque(-0.1) + 2.0 / f64::exp(1.0)).abs() < 1e-15);
 /// assert_eq!(rise.torque(0.0), 0.0);
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stribeck {
     /// Breakaway minus Coulomb friction F_s - F_c \[N m; N\], at least -F_c.

@@ -1,9 +1,10 @@
 //! Friction that falls while a joint warms up.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The quantity that measures how warm a joint is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum WarmingBy {
     /// The temperature T of the joint \[°C\]; its warmth is T - T_ref \[K\].
@@ -45,7 +46,7 @@ impl WarmingBy {
 /// let by_runs = Warming { by: WarmingBy::Runs, reference: 1.0, ..law };
 /// assert!((by_runs.factors(8.0)[1] - 8f64.powf(-0.01)).abs() < 1e-15);
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Warming {
     /// The quantity that the law depends on.

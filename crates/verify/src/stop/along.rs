@@ -5,6 +5,7 @@ use reachtube_conform::data::{RunSummary, Suite};
 use reachtube_conform::{Problem, SuiteReach};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
@@ -14,17 +15,19 @@ use crate::stop::path::Path;
 use crate::stop::stop::{JointStop, Stop};
 
 /// The stops of a joint from the samples of a motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WorstStop {
     /// The suite.
     pub suite: String,
     /// The joint.
     pub joint: String,
     /// The greatest proved way to standstill, in either direction, rad or m.
+    #[schemars(with = "Option<f64>")]
     pub way: f64,
     /// The time of the sample from which it is the greatest, s.
     pub way_from: f64,
     /// The latest proved time of standstill after a stop, s.
+    #[schemars(with = "Option<f64>")]
     pub time: f64,
     /// The time of the sample from which it is the latest, s.
     pub time_from: f64,

@@ -6,6 +6,7 @@ use reachtube_finding::{Finding, Severity};
 use reachtube_reach::Hyperrectangle;
 use reachtube_robot::{InertiaPoint, LinkInertia, Robot};
 use reachtube_scalar::Interval;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::Result;
@@ -25,7 +26,7 @@ const PATH: f64 = 100.0;
 
 /// Stopping times and distances of the three joints with the greatest displacement: category 0 at
 /// full speed, extension and load, and category 1 at 33, 66 and 100 % of each.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct AnnexB {
     /// The rows.
     pub rows: Vec<AnnexRow>,
@@ -35,7 +36,7 @@ pub struct AnnexB {
 }
 
 /// Stops in which one joint moves, the worse of both directions.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct AnnexRow {
     /// The stop category, 0 or 1.
     pub category: u8,
@@ -52,8 +53,10 @@ pub struct AnnexRow {
     /// The posture when the stop begins, rad or m.
     pub posture: Vec<f64>,
     /// The greatest proved way of the joint, rad or m; infinite if none is proved.
+    #[schemars(with = "Option<f64>")]
     pub way: f64,
     /// The latest proved time at which all joints stand, s; infinite if none is proved.
+    #[schemars(with = "Option<f64>")]
     pub time: f64,
 }
 

@@ -3,6 +3,7 @@
 use reachtube_recordings::{GapLimit, ReadOptions, Run, RunSource, noise_deviations};
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::Result;
@@ -23,7 +24,7 @@ const SPREAD: f64 = 5.0;
 const PATH: f64 = 100.0;
 
 /// A joint in a recorded stop, and the stop that is proved from the first recorded state.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RecordedStop {
     /// The recording.
     pub recording: String,
@@ -36,8 +37,10 @@ pub struct RecordedStop {
     /// The measured time of standstill, s; `None` if the joint moves until the end.
     pub time: Option<f64>,
     /// The least and the greatest proved way; infinite if no standstill is proved.
+    #[schemars(with = "[Option<f64>; 2]")]
     pub proved_way: [f64; 2],
     /// The latest proved time of standstill, s; infinite if none is proved.
+    #[schemars(with = "Option<f64>")]
     pub proved_time: f64,
     /// Whether the measured way lies within the proved ones, and the time is not later.
     pub is_within: bool,

@@ -4,6 +4,7 @@ use reachtube_conform::{Problem, UncertaintySets};
 use reachtube_finding::Finding;
 use reachtube_recordings::RunSource;
 use reachtube_robot::JointKind;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::Result;
@@ -31,7 +32,7 @@ pub struct StopQuestion<'a> {
 }
 
 /// The answer to a question about the stops of a robot.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StopStudy {
     /// The stop category, 0 or 1, along the motions and of the recorded stops.
     pub category: u8,

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use reachtube_conform::SuiteReach;
 use reachtube_scalar::Interval;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::body::body::{Body, Workspace};
@@ -13,7 +14,7 @@ use crate::scene::separation::separation;
 use crate::verdict::part_of_step::PartOfStep;
 
 /// The smallest proved distance between a link and an obstacle over a motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Clearance {
     /// Name of the link: of the joint that moves it.
     pub link: String,
@@ -21,6 +22,7 @@ pub struct Clearance {
     pub obstacle: String,
     /// A lower bound of their distance \[m\], over all motions of the model; negative if no
     /// distance above 0 is proved.
+    #[schemars(with = "Option<f64>")]
     pub distance: f64,
     /// Start of the step in which it is the smallest, s.
     pub time: f64,

@@ -2,6 +2,7 @@
 
 use reachtube_conform::{Error, SuiteReach, Tube, UncertaintySets, reach};
 use reachtube_reach::Hyperrectangle;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::scene::scenario::Scene;
@@ -20,7 +21,7 @@ const PARTS: [u32; 2] = [64, 512];
 const HALVINGS: [u32; 2] = [6, 4];
 
 /// Changes that decide an open question, found by trial.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum NextStep {
     /// Steps divided into this number of parts prove that the links stay clear.

@@ -4,6 +4,7 @@ use reachtube_conform::SuiteReach;
 use reachtube_robot::Robot;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, mul_up, sub_down, sub_up};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::body::body::Body;
@@ -18,7 +19,7 @@ use crate::verdict::clearance::{Clearance, Memory, Search};
 const STEPS: usize = 8;
 
 /// The stops from all samples of a motion.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct MotionStops {
     /// The stop category, 0 or 1.
     pub category: u8,
@@ -51,7 +52,7 @@ pub struct MotionStops {
 }
 
 /// The smallest proved distance between a link and an obstacle during the stops of a motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StopClearance {
     /// Name of the link: of the joint that moves it.
     pub link: String,
@@ -59,6 +60,7 @@ pub struct StopClearance {
     pub obstacle: String,
     /// A lower bound of their distance until standstill \[m\]; negative if no distance above 0 is
     /// proved, minus infinity if no standstill is.
+    #[schemars(with = "Option<f64>")]
     pub distance: f64,
     /// The time of the sample at which that stop begins, s.
     pub from: f64,
@@ -66,15 +68,18 @@ pub struct StopClearance {
 
 /// How far a person must be from a link at the last sample before a stop begins: the way of the
 /// link until standstill, and 1.6 m/s (ISO 13855) for that time.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TriggerDistance {
     /// Name of the link: of the joint that moves it.
     pub link: String,
     /// The distance \[m\], rounded up; infinite if a standstill is not proved.
+    #[schemars(with = "Option<f64>")]
     pub distance: f64,
     /// The way of the link \[m\], rounded up.
+    #[schemars(with = "Option<f64>")]
     pub way: f64,
     /// The time from the sample before the stop until standstill, s, rounded up.
+    #[schemars(with = "Option<f64>")]
     pub time: f64,
     /// The time of the sample at which that stop begins, s.
     pub from: f64,

@@ -3,6 +3,7 @@
 use reachtube_conform::data::Case;
 use reachtube_conform::tube::Lost;
 use reachtube_conform::{Problem, SuiteReach, Tube, reach};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::body::body::Body;
@@ -21,7 +22,7 @@ use crate::verdict::witness::{Approach, Witness};
 const TOUCH: f64 = 1e-6;
 
 /// Whether the links stay clear of the obstacles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Answer {
     /// On every motion of the model each link keeps the clearance.
@@ -33,7 +34,7 @@ pub enum Answer {
 }
 
 /// The verdict about a suite, or about a run that has its own nominal motion.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct Verification {
     /// The suite, and the run.
     pub case: String,
@@ -42,6 +43,7 @@ pub struct Verification {
     /// The smallest proved distance of each link from each obstacle, smallest first.
     pub clearances: Vec<Clearance>,
     /// The margin of each link about the nominal motion.
+    #[serde(skip)]
     pub margins: Vec<Margin>,
     /// The simulated motion that comes closest, unless the answer is safe.
     pub closest: Option<Witness>,

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use reachtube_conform::data::Case;
 use reachtube_conform::{Problem, UncertaintySets};
 use reachtube_reach::Disturbance;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::body::body::Body;
@@ -20,7 +21,7 @@ const ROUNDS: usize = 3;
 const DIFFERENCE: f64 = 1e-6;
 
 /// A motion of the model with the sample at which a link is closest to an obstacle.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Witness {
     /// Name of the link: of the joint that moves it.
     pub link: String,
@@ -47,7 +48,7 @@ pub struct Witness {
 }
 
 /// The stop of a witness.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StopOfWitness {
     /// The time at which the stop begins, s.
     pub from: f64,

@@ -3,21 +3,63 @@
 mod arguments;
 mod shield;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use reachtube::export::robot::{mjcf_files, updated_urdf_files, urdf_files};
 use reachtube::export::{ExportCase, ExportError, ExportFile, InputForm, Meaning, Tool, files};
 use reachtube::{Robot, write};
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 pub(crate) use arguments::Arguments;
 use arguments::{Target, load_robot, open, refuse_unused, write_all};
+pub(crate) use shield::ShieldExport;
 
 use crate::error::{Error, Result};
 use crate::file_names;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::table;
+
+/// The result of `export` of a robot.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct RobotExport<'a> {
+    /// Name of the robot.
+    robot: &'a str,
+    /// Paths of the files.
+    files: &'a [String],
+}
+
+/// The result of `export` of a model.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct ModelExport<'a> {
+    /// The tool.
+    tool: String,
+    /// One entry for each suite, or run with a nominal motion of its own.
+    cases: Vec<CaseExport<'a>>,
+}
+
+/// An exported case.
+#[derive(Serialize, JsonSchema)]
+struct CaseExport<'a> {
+    /// The suite.
+    suite: &'a str,
+    /// The run; null where all runs share their nominal motion.
+    run: Option<&'a str>,
+    /// Number of states of the exported system.
+    states: usize,
+    /// Number of samples.
+    samples: usize,
+    /// How the recorded input enters.
+    input: InputForm,
+    /// Whether the tool knows fewer disturbances than the model, so that its set proves nothing
+    /// about it.
+    may_be_smaller: bool,
+    /// The folder.
+    folder: String,
+    /// Names in the folder.
+    files: Vec<&'a str>,
+}
 
 /// An exported case and its files.
 struct Written {
@@ -65,7 +107,7 @@ fn robot(
     let paths: Vec<PathBuf> = files.iter().map(|file| args.out.join(&file.name)).collect();
     write_all(&paths, files.iter())?;
     let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
-    let result = json!({ "robot": robot.name(), "files": names });
+    let result = RobotExport { robot: robot.name(), files: &names };
     let text = || format!("exported {}:\n  {}\n", robot.name(), names.join("\n  "));
     output::show(json, &result, text)?;
     Ok(Outcome::Done)
@@ -92,13 +134,9 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
              model's and proves nothing about it"
         ));
     }
-    let result = || json!({ "tool": tool.to_string(), "cases": cases_json(&written) });
-    output::show(json, &result(), || summary(tool, &written))?;
+    let cases = written.iter().map(Written::output).collect();
+    output::show(json, &ModelExport { tool: tool.to_string(), cases }, || summary(tool, &written))?;
     Ok(Outcome::Done)
-}
-
-fn cases_json(written: &[Written]) -> Vec<Value> {
-    written.iter().map(Written::json).collect()
 }
 
 fn summary(tool: Tool, written: &[Written]) -> String {
@@ -114,18 +152,17 @@ impl Written {
         self.files.iter().map(|file| self.folder.join(&file.name))
     }
 
-    fn json(&self) -> Value {
-        let text = |path: &Path| path.display().to_string();
-        json!({
-            "suite": self.case.reach.suite,
-            "run": self.case.reach.run,
-            "states": self.case.system.dimension(),
-            "samples": self.case.grid.len(),
-            "input": self.form.to_string(),
-            "may_be_smaller": self.may_be_smaller,
-            "folder": text(&self.folder),
-            "files": self.files.iter().map(|file| file.name.clone()).collect::<Vec<_>>(),
-        })
+    fn output(&self) -> CaseExport<'_> {
+        CaseExport {
+            suite: &self.case.reach.suite,
+            run: self.case.reach.run.as_deref(),
+            states: self.case.system.dimension(),
+            samples: self.case.grid.len(),
+            input: self.form,
+            may_be_smaller: self.may_be_smaller,
+            folder: self.folder.display().to_string(),
+            files: self.files.iter().map(|file| &*file.name).collect(),
+        }
     }
 
     fn row(&self) -> Vec<String> {

@@ -7,7 +7,8 @@ use reachtube::export::shield::{LinkMargin, Shield, ShieldFile};
 use reachtube::number::at_least;
 use reachtube::verify::Capsules;
 use reachtube::write;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::arguments::{Arguments, open, write_all};
 use crate::error::Result;
@@ -37,7 +38,7 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
             at_least(shield.secure_radius)
         ));
     }
-    output::show(json, &value(&shield, &paths), || text(&shield, &paths))?;
+    output::show(json, &ShieldExport::new(&shield, &paths), || text(&shield, &paths))?;
     Ok(Outcome::Done)
 }
 
@@ -47,19 +48,34 @@ fn read(path: &Path) -> Result<ShieldFile> {
     Ok(ShieldFile { name, text })
 }
 
-fn value(shield: &Shield, paths: &[PathBuf]) -> Value {
-    let margin = |margin: &LinkMargin| {
-        json!({ "link": margin.joint, "margin": margin.distance, "motion": margin.case,
-                "time": margin.time })
-    };
-    json!({
-        "tool": "SaRA shield",
-        "secure_radius": shield.secure_radius,
-        "margins": shield.margins.iter().map(margin).collect::<Vec<_>>(),
-        "velocity": shield.covered.velocity,
-        "acceleration": shield.covered.acceleration,
-        "files": paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>(),
-    })
+/// The result of `export --to sara-shield`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct ShieldExport<'a> {
+    /// The tool.
+    tool: &'static str,
+    /// How far a link can be from its nominal motion, m; rounded up.
+    secure_radius: f64,
+    /// The margin of each link.
+    margins: &'a [LinkMargin],
+    /// Greatest speed of each joint that was covered, rad/s.
+    velocity: &'a [f64],
+    /// Greatest acceleration of each joint that was covered, rad/s².
+    acceleration: &'a [f64],
+    /// Paths of the files.
+    files: Vec<String>,
+}
+
+impl<'a> ShieldExport<'a> {
+    fn new(shield: &'a Shield, paths: &[PathBuf]) -> Self {
+        Self {
+            tool: "SaRA shield",
+            secure_radius: shield.secure_radius,
+            margins: &shield.margins,
+            velocity: &shield.covered.velocity,
+            acceleration: &shield.covered.acceleration,
+            files: paths.iter().map(|path| path.display().to_string()).collect(),
+        }
+    }
 }
 
 fn text(shield: &Shield, paths: &[PathBuf]) -> String {

@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use reachtube::conform::monitor::{Alarm, HealthyMotion, Leave, Monitor};
-use reachtube::finding::Finding;
+use reachtube::conform::monitor::{Alarm, HealthyMotion, Leave, Monitor, Totals};
+use reachtube::finding::{Code, Finding};
 use reachtube::recordings::State;
 use reachtube::robot::{JointKind, Robot};
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::error::Result;
 use crate::output;
@@ -21,6 +22,58 @@ pub(super) struct Events {
     first: Option<Finding>,
     /// Upper bound of the probability of an alarm in one more healthy recording.
     alarm_bound: Option<f64>,
+}
+
+/// One line of `monitor --json`.
+#[derive(Serialize, JsonSchema)]
+#[serde(tag = "event", rename_all = "lowercase")]
+pub(crate) enum Event<'a> {
+    /// The first value of a window outside its set; of several at its sample, the one furthest
+    /// outside in parts of the radius.
+    Left {
+        /// The value.
+        #[serde(flatten)]
+        leave: &'a Leave,
+        /// Name of the joint.
+        name: &'a str,
+        /// The code of the finding.
+        code: Code,
+    },
+    /// A number that leaves its range in healthy motion: calibrated, not proved.
+    Alarm {
+        /// The number.
+        #[serde(flatten)]
+        alarm: &'a Alarm,
+        /// Name of the joint; null for the payload.
+        name: Option<&'a str>,
+        /// The code of the finding.
+        code: Code,
+    },
+    /// How much of the sets is used.
+    Gauge {
+        /// Time of the sample, s.
+        time: f64,
+        /// Parts of the radius in each state, q then qd.
+        used: &'a [f64],
+        /// Where in the set windows end on average, in parts of the radius, in each state.
+        drift: &'a [f64],
+    },
+    /// The summary.
+    Summary {
+        /// Why the monitor ended: "end of input", "interrupt" or "error".
+        ended: &'a str,
+        /// What was judged.
+        totals: Totals,
+        /// The largest part of the radius in each state, q then qd.
+        largest_used: &'a [f64],
+        /// Where in the set windows end on average, in each state.
+        drift: &'a [f64],
+        /// The probability at most that one more healthy recording raises an alarm; null without
+        /// --healthy.
+        alarm_bound: Option<f64>,
+        /// What the answer says, statement by statement: the verdict first.
+        findings: Vec<&'a Finding>,
+    },
 }
 
 impl Events {
@@ -44,14 +97,10 @@ impl Events {
         let name = &self.names[leave.joint - 1];
         let finding = leave.finding(name, self.kinds[leave.joint - 1]);
         let text = format!("{}\n", finding.text);
-        let code = finding.code.name().to_string();
+        let code = finding.code.clone();
         self.first.get_or_insert(finding);
         if self.json {
-            let mut event = serde_json::to_value(leave).expect("an event has string keys");
-            event["event"] = "left".into();
-            event["name"] = name.clone().into();
-            event["code"] = code.into();
-            return line(&event);
+            return line(&Event::Left { leave, name, code });
         }
         output::print(&text)
     }
@@ -81,11 +130,8 @@ impl Events {
             let joint = alarm.joint.map(|joint| (&*self.names[joint - 1], self.kinds[joint - 1]));
             let finding = alarm.finding(joint);
             if self.json {
-                let mut event = serde_json::to_value(alarm).expect("an event has string keys");
-                event["event"] = "alarm".into();
-                event["name"] = joint.map(|(name, _)| name).into();
-                event["code"] = finding.code.name().into();
-                line(&event)?;
+                let name = joint.map(|(name, _)| name);
+                line(&Event::Alarm { alarm, name, code: finding.code.clone() })?;
             } else {
                 output::print(&format!("{}\n", finding.text))?;
             }
@@ -97,12 +143,7 @@ impl Events {
     /// Prints how much of the sets is used at a time, s.
     pub(super) fn gauge(&self, time: f64, monitor: &Monitor) -> Result<()> {
         if self.json {
-            return line(&json!({
-                "event": "gauge",
-                "time": time,
-                "used": monitor.used(),
-                "drift": monitor.drift(),
-            }));
+            return line(&Event::Gauge { time, used: monitor.used(), drift: monitor.drift() });
         }
         let (state, used) = greatest(monitor.used());
         let (drifting, drift) = greatest(monitor.drift());
@@ -122,15 +163,14 @@ impl Events {
         let verdict = totals.finding();
         if self.json {
             let findings: Vec<&Finding> = [&verdict].into_iter().chain(&self.first).collect();
-            return line(&json!({
-                "event": "summary",
-                "ended": ended,
-                "totals": totals,
-                "largest_used": monitor.largest_used(),
-                "drift": monitor.drift(),
-                "alarm_bound": self.alarm_bound,
-                "findings": findings,
-            }));
+            return line(&Event::Summary {
+                ended,
+                totals,
+                largest_used: monitor.largest_used(),
+                drift: monitor.drift(),
+                alarm_bound: self.alarm_bound,
+                findings,
+            });
         }
         let mut text = format!("{}\n", verdict.text);
         if let Some(first) = &self.first {
@@ -157,6 +197,7 @@ fn greatest(parts: &[f64]) -> (usize, f64) {
     parts.iter().enumerate().max_by(by_size).map_or((0, 0.0), |(state, part)| (state, *part))
 }
 
-fn line(value: &Value) -> Result<()> {
-    output::print_json_text(&format!("{value}\n"))
+fn line(event: &Event<'_>) -> Result<()> {
+    let text = serde_json::to_string(event).expect("an event has string keys");
+    output::print_json_text(&(text + "\n"))
 }

@@ -6,4 +6,5 @@ mod run;
 mod samples;
 
 pub(crate) use arguments::Arguments;
+pub(crate) use events::Event;
 pub(crate) use run::run;

@@ -1,3 +1,4 @@
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::linear::input_gains::measurable::measurable_gains;
@@ -9,7 +10,7 @@ use crate::sets::interval_matrix::{IntervalMatrix, absolute};
 ///
 /// The class decides the input gain κ from the radius of the input set to the radius of the
 /// reachable set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Disturbance {
     /// The disturbance is constant in time (Prop. 1 of the paper): κ = |Γ(t_k)|.

@@ -13,6 +13,8 @@ use reachtube_conform::SuiteReach;
 use reachtube_files::{MARK, TOOL};
 use reachtube_robot::Robot;
 use reachtube_verify::{Body, Capsules, Margin};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::text::{comment, harmless, number};
 use super::{ExportError, ExportFile};
@@ -30,13 +32,16 @@ const RELATIVE: f64 = 1e-5;
 const RESOLUTION: f64 = 1e-6;
 
 /// The margin of a link, and the suite or run in which it is the largest.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LinkMargin {
     /// The joint that moves the link.
+    #[serde(rename = "link")]
     pub joint: String,
     /// The suite or run.
+    #[serde(rename = "motion")]
     pub case: String,
-    /// The margin \[m\].
+    /// The margin, m, rounded up.
+    #[serde(rename = "margin")]
     pub distance: f64,
     /// Start of the step in which it is the largest, s.
     pub time: f64,

@@ -1,0 +1,77 @@
+//! The JSON schemas of files and results, generated from the types that are written.
+
+use clap::ValueEnum;
+use reachtube::campaign::RecordedCampaign;
+use reachtube::identify::Summary;
+use reachtube::pipeline::{ModelOutput, VerifyOutput};
+use reachtube::recordings::Inspection;
+use reachtube::verify::StopStudy;
+use reachtube::{Check, Model, abstraction};
+use reachtube_files::schema_of_any;
+use reachtube_logs::LogInspection;
+use schemars::JsonSchema;
+use serde_json::Value;
+
+use crate::commands::r#abstract::AbstractOutput;
+use crate::commands::convert::ConvertOutput;
+use crate::commands::demo::DemoOutput;
+use crate::commands::excite::ExciteOutput;
+use crate::commands::export::{ModelExport, RobotExport, ShieldExport};
+use crate::commands::monitor::Event;
+use crate::commands::prepare::PrepareOutput;
+use crate::commands::reach::ReachOutput;
+use crate::commands::report::ReportOutput;
+use crate::commands::reproduce::Numbers;
+use crate::commands::robot::RobotOutput;
+use crate::output::ErrorOutput;
+
+/// What a schema describes.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum SchemaOf {
+    /// A model file
+    Model,
+    /// An abstraction file
+    Abstraction,
+    /// What each command prints with --json
+    Results,
+}
+
+/// Returns a schema.
+pub(crate) fn schema_of(what: SchemaOf) -> Value {
+    match what {
+        SchemaOf::Model => Model::schema(),
+        SchemaOf::Abstraction => abstraction::file_schema(),
+        SchemaOf::Results => results(),
+    }
+}
+
+/// Returns the schema of what each command prints, with a definition for each.
+fn results() -> Value {
+    schema_of_any(
+        "What commands print with --json; numbers are in SI units",
+        &[
+            ("abstract", AbstractOutput::json_schema),
+            ("campaign", RecordedCampaign::json_schema),
+            ("check", Check::json_schema),
+            ("convert", ConvertOutput::json_schema),
+            ("demo", DemoOutput::json_schema),
+            ("error", ErrorOutput::json_schema),
+            ("excite", ExciteOutput::json_schema),
+            ("export", ModelExport::json_schema),
+            ("export_robot", RobotExport::json_schema),
+            ("export_shield", ShieldExport::json_schema),
+            ("identify", Summary::json_schema),
+            ("inspect", Inspection::json_schema),
+            ("inspect_logs", LogInspection::json_schema),
+            ("model", ModelOutput::json_schema),
+            ("monitor", Event::json_schema),
+            ("prepare", PrepareOutput::json_schema),
+            ("reach", ReachOutput::json_schema),
+            ("report", ReportOutput::json_schema),
+            ("reproduce", Numbers::json_schema),
+            ("robot_show", RobotOutput::json_schema),
+            ("stop", StopStudy::json_schema),
+            ("verify", VerifyOutput::json_schema),
+        ],
+    )
+}
