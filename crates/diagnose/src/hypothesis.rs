@@ -2,11 +2,12 @@ use std::f64::consts::PI;
 
 use reachtube_recordings::Torque;
 use reachtube_robot::{JointKind, Robot};
+use serde::{Deserialize, Serialize};
 
 use crate::change::Change;
 
 /// What recordings may mean instead of what was stated. Joints count from 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Hypothesis {
     /// The torques are in units of this many N m.
     TorqueUnit(f64),
@@ -30,7 +31,7 @@ pub enum Hypothesis {
 }
 
 /// Columns of a joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Columns {
     /// The torque.
     Torque,
@@ -116,7 +117,8 @@ impl Hypothesis {
     }
 
     /// Returns the hypothesis as a clause that leaves room for doubt.
-    fn probable_clause(&self, robot: &Robot) -> String {
+    #[must_use]
+    pub fn probable_clause(&self, robot: &Robot) -> String {
         let [subject, verb, rest] = self.words(robot);
         match verb.as_str() {
             "is" | "are" => format!("{subject} {verb} probably {rest}"),
@@ -124,7 +126,6 @@ impl Hypothesis {
         }
     }
 
-    /// Returns subject, verb and the rest of the clause.
     fn words(&self, robot: &Robot) -> [String; 3] {
         let name = |joint: usize| robot.joints()[joint].name.as_str();
         let words = |subject: &str, verb: &str, rest: String| [subject.into(), verb.into(), rest];
@@ -171,8 +172,12 @@ impl Hypothesis {
     }
 
     /// Returns what corrects the recordings, and the remedy; both empty if the clause says so.
-    fn remedy(&self) -> [String; 2] {
+    #[must_use]
+    pub fn remedy(&self) -> [String; 2] {
         match *self {
+            Self::TorqueUnit(factor) => {
+                ["the factor".into(), format!("multiply the torques by {factor}")]
+            }
             Self::Sign(..) => [
                 "the other sign".into(),
                 "multiply the columns by -1 (for tau, set a negative gain)".into(),

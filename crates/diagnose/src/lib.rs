@@ -5,7 +5,10 @@
 //!
 //! - [`RobotMisfit`] compares the recorded input with the one that a known robot needs.
 //! - [`FreeMisfit`] leaves the robot's parameters free.
+//!
+//! [`Agreement`] is the measure of how recorded torques follow the ones that a robot needs.
 
+mod agreement;
 mod change;
 mod free_misfit;
 mod hypothesis;
@@ -13,6 +16,7 @@ mod likeliest;
 mod reading;
 mod robot_misfit;
 
+pub use agreement::{Agreement, median};
 pub use change::Change;
 pub use free_misfit::{FreeMisfit, Signals};
 pub use hypothesis::{Columns, Hypothesis};

@@ -34,7 +34,7 @@ pub struct LikeliestFault {
 /// on a joint with little torque as on one with much. The result is `None` if no fault explains
 /// enough. Where the recordings do not determine all combinations of parameters (`is_determined`),
 /// a false reading may explain a short motion better than the right one, because the open
-/// parameters adapt to it. Only degrees are then looked for.
+/// parameters adapt to it. Only degrees and signs of torques are then looked for.
 #[must_use]
 pub fn likeliest_fault(misfit: &FreeMisfit, is_determined: bool) -> Option<LikeliestFault> {
     let stated = misfit.stated();
@@ -47,8 +47,11 @@ pub fn likeliest_fault(misfit: &FreeMisfit, is_determined: bool) -> Option<Likel
         Some(LikeliestFault { fault, score, clearest })
     };
     let better = |a: &LikeliestFault, b: &LikeliestFault| a.score.total_cmp(&b.score);
-    let joints = if is_determined { misfit.robot.joint_count() } else { 0 };
-    let mut best = faults(joints).into_par_iter().filter_map(without).min_by(better)?;
+    let mut faults = faults(misfit.robot.joint_count());
+    faults.retain(|fault| {
+        is_determined || matches!(fault, Hypothesis::Degrees | Hypothesis::Sign(_, Columns::Torque))
+    });
+    let mut best = faults.into_par_iter().filter_map(without).min_by(better)?;
     // The size of an offset or lag.
     let mut step = 0.5 * best.fault.size().unwrap_or(0.0);
     for _ in 0..REFINEMENTS {
@@ -61,7 +64,6 @@ pub fn likeliest_fault(misfit: &FreeMisfit, is_determined: bool) -> Option<Likel
     (best.score < REMAINING.ln()).then_some(best)
 }
 
-/// Returns all faults of the columns of some joints, and degrees.
 fn faults(joints: usize) -> Vec<Hypothesis> {
     let mut all = vec![Hypothesis::Degrees];
     for joint in 0..joints {
@@ -73,8 +75,6 @@ fn faults(joints: usize) -> Vec<Hypothesis> {
             all.extend(Columns::CASES.map(swap));
         }
     }
-    if joints > 0 {
-        all.extend(LAGS.map(|delay| Hypothesis::Lag(None, delay)));
-    }
+    all.extend(LAGS.map(|delay| Hypothesis::Lag(None, delay)));
     all
 }

@@ -2,6 +2,7 @@ use nalgebra::DVector;
 use reachtube_recordings::{Run, Torque};
 use reachtube_robot::Robot;
 
+use crate::agreement::Agreement;
 use crate::change::Change;
 
 /// Number of samples of each run that are looked at, at most.
@@ -34,9 +35,8 @@ struct Needed {
     runs: Vec<Vec<[Vec<f64>; 3]>>,
 }
 
-/// What a run's input and the one that the robot needs differ by, and their size, for each joint:
-/// Σ (u - u_m)² and Σ (u² + u_m²).
-pub(crate) type Misses = Vec<[f64; 2]>;
+/// How the inputs of a run agree with the ones that the robot needs, for each joint.
+pub(crate) type Misses = Vec<Agreement>;
 
 impl<'a> RobotMisfit<'a> {
     /// Takes runs of a robot; short ones are no evidence.
@@ -74,13 +74,13 @@ impl<'a> RobotMisfit<'a> {
         part(&self.misses(change))
     }
 
-    /// Returns, for each run and joint, Σ (u - u_m)² and Σ (u² + u_m²).
+    /// Compares the inputs of each run with the ones that the robot needs.
     pub(crate) fn misses(&self, change: &Change) -> Vec<Misses> {
         let is_shared = change.has_motion_of(&self.needed.change);
         let own = (!is_shared).then(|| Needed::new(self.robot, &self.runs, change.clone()));
         let needed = own.as_ref().unwrap_or(&self.needed);
         let of_run = |(run, needed): (&Run, &Vec<[Vec<f64>; 3]>)| {
-            let mut sums = vec![[0.0; 2]; self.robot.joint_count()];
+            let mut sums = vec![Agreement::default(); self.robot.joint_count()];
             let samples = Samples::new(run);
             let lags = change.lags.iter().map(|lag| (lag / samples.step).round() as usize);
             let lags: Vec<usize> = lags.collect();
@@ -103,8 +103,7 @@ impl<'a> RobotMisfit<'a> {
                         }
                         Torque::Motor | Torque::Compensated => (needed[joint], recorded[joint]),
                     };
-                    sum[0] += (a - b) * (a - b);
-                    sum[1] += a * a + b * b;
+                    sum.add(a, b);
                 }
             }
             sums
@@ -157,13 +156,10 @@ impl<'a> RobotMisfit<'a> {
 pub(crate) fn part<'a>(runs: impl IntoIterator<Item = &'a Misses>) -> Option<f64> {
     let mut sums: Misses = Vec::new();
     for run in runs {
-        sums.resize(run.len(), [0.0; 2]);
-        sums.iter_mut().zip(run).for_each(|(sum, own)| {
-            *sum = [sum[0] + own[0], sum[1] + own[1]];
-        });
+        sums.resize(run.len(), Agreement::default());
+        sums.iter_mut().zip(run).for_each(|(sum, own)| *sum = sum.with(own));
     }
-    let moving = sums.iter().filter(|[_, size]| *size > 0.0);
-    let parts: Vec<f64> = moving.map(|[missed, size]| missed / size).collect();
+    let parts: Vec<f64> = sums.iter().filter_map(Agreement::unexplained).collect();
     (!parts.is_empty()).then(|| parts.iter().sum::<f64>() / parts.len() as f64)
 }
 

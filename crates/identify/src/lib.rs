@@ -72,7 +72,7 @@ pub use friction::fit::{FrictionFit, JointFriction};
 pub use friction::form::CoulombForm;
 pub use identification::{Identification, identify};
 pub use inertia::{BaseParameter, InertiaFit, PhysicalFit, SaturatingFriction};
-pub use plausibility::{Gain, Implausible, PositionOffset, WrongColumns};
+pub use plausibility::{Gain, Implausible, PositionOffset};
 pub use regression::triangular_factor::TriangularFactor;
 pub use settings::{IdentifySettings, ModelSettings};
 pub use summary::Summary;

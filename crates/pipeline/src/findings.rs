@@ -2,8 +2,9 @@
 
 use crate::code::Code;
 use reachtube_conform::next_motion::LeftOut;
+use reachtube_diagnose::Hypothesis;
 use reachtube_finding::{Finding, Severity};
-use reachtube_identify::{Implausible, WrongColumns};
+use reachtube_identify::Implausible;
 use reachtube_robot::Robot;
 
 use crate::choices::Choices;
@@ -19,7 +20,7 @@ pub(crate) fn contradiction(text: &str) -> Finding {
 pub(crate) fn implausible(result: &Implausible) -> Finding {
     let severity = if result.columns.is_some() { Severity::Failure } else { Severity::Warning };
     let mut text = result.text.clone();
-    if result.columns == Some(WrongColumns::Unit) {
+    if let Some(Hypothesis::Degrees | Hypothesis::TorqueUnit(_)) = result.columns {
         text += "; or the description is of another robot";
     }
     Finding { severity, ..contradiction(&text) }

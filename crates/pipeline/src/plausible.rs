@@ -1,8 +1,9 @@
 //! Whether recorded torques are what the robot's description needs, up to sign and size.
 
+use reachtube_diagnose::{Agreement, median};
 use reachtube_finding::{Finding, Remedy};
 use reachtube_identify::prepare::{PreparedLog, RawLog};
-use reachtube_recordings::{Run, Torque};
+use reachtube_recordings::{Run, Torque, dead_torques};
 use reachtube_robot::Robot;
 
 use crate::findings::contradiction;
@@ -13,9 +14,6 @@ const FACTOR: f64 = 5.0;
 
 /// A correlation below the negative of this shows a wrong sign.
 const OPPOSITE: f64 = 0.5;
-
-/// A joint that leaves its first position by more than this moves, rad or m.
-const MOVES: f64 = 0.05;
 
 /// Samples of a recording that are looked at, at most.
 const SAMPLES: usize = 2000;
@@ -58,30 +56,26 @@ pub(crate) fn contradictions(
         Torque::Link => robot.joints()[joint].armature * qdd,
         Torque::Motor | Torque::Compensated => 0.0,
     };
-    // Means, and sums of products of what the description needs with what was recorded.
-    let (mut needed, mut recorded) = (vec![Vec::new(); n], vec![Vec::new(); n]);
+    let mut joints = vec![Agreement::default(); n];
     for log in logs {
         for k in (0..log.len()).step_by((log.len() / SAMPLES).max(1)) {
             let torque = robot.inverse_dynamics(log.q(k), log.qd(k), log.qdd(k));
-            for joint in 0..n {
-                needed[joint].push(torque[joint] - of_motors(joint, log.qdd(k)[joint]));
-                recorded[joint].push(log.tau(k)[joint]);
+            for (joint, agreement) in joints.iter_mut().enumerate() {
+                let needed = torque[joint] - of_motors(joint, log.qdd(k)[joint]);
+                agreement.add(needed, log.tau(k)[joint]);
             }
         }
     }
-    let fit = |joint: usize| Correlation::new(&needed[joint], &recorded[joint]);
-    let is_explained = |joint: &usize| fit(*joint).value.abs() > OPPOSITE;
-    let explained = Explained { joints: (0..n).filter(is_explained).count(), of: n };
+    let follows: Vec<[f64; 2]> = joints.iter().map(Agreement::follows).collect();
+    let explained = || follows.iter().filter(|[correlation, _]| correlation.abs() > OPPOSITE);
     let mut found = Vec::new();
     // The size of all torques comes first: a sign is about one joint.
-    let own = (0..n).map(fit).filter(|own| own.value.abs() > OPPOSITE);
-    let mut gains: Vec<f64> = own.map(|own| own.gain.abs()).collect();
-    gains.sort_by(f64::total_cmp);
-    let median = gains.get(gains.len() / 2).copied().unwrap_or(1.0);
-    if !(1.0 / FACTOR..=FACTOR).contains(&median) {
-        found.push(wrong_size(median));
+    let factor = median(explained().map(|[_, gain]| gain.abs())).unwrap_or(1.0);
+    if !(1.0 / FACTOR..=FACTOR).contains(&factor) {
+        found.push(wrong_size(factor));
     }
-    let opposite = (0..n).filter(|joint| fit(*joint).value < -OPPOSITE);
+    let explained = Explained { joints: explained().count(), of: n };
+    let opposite = (0..n).filter(|joint| follows[*joint][0] < -OPPOSITE);
     let names: Vec<&str> = opposite.map(|joint| robot.joints()[joint].name.as_str()).collect();
     let names = names.join(", ");
     if !names.is_empty() {
@@ -112,20 +106,10 @@ fn wrong_size(factor: f64) -> Finding {
 
 /// Returns the joints that move while their torque stays the same in every sample, as a finding.
 pub(crate) fn unmeasured(robot: &Robot, logs: &[&RawLog]) -> Option<Finding> {
-    let first = logs.first()?;
-    let moves = |joint: usize| {
-        let differs = |run: &Run| (0..run.len()).any(|k| off(run.q(k), run.q(0), joint) > MOVES);
-        logs.iter().any(|log| differs(&log.run))
-    };
-    let constant = first.run.torque(0).to_vec();
-    let is_constant = |joint: usize| {
-        let mut torques = logs.iter().flat_map(|log| (0..log.run.len()).map(|k| log.run.torque(k)));
-        torques.all(|torque| off(torque, &constant, joint) == 0.0)
-    };
-    let joints = (0..robot.joint_count()).filter(|joint| moves(*joint) && is_constant(*joint));
-    let joints: Vec<usize> = joints.collect();
+    let runs: Vec<&Run> = logs.iter().map(|log| &log.run).collect();
+    let joints = dead_torques(&runs);
     let names: Vec<&str> = joints.iter().map(|i| robot.joints()[*i].name.as_str()).collect();
-    let value = constant.get(*joints.first()?)?;
+    let value = runs.first()?.torque(0).get(*joints.first()?)?;
     let text = format!(
         "the torque of {} is {value} in every sample, although the joint moves: it was not \
          measured, and there is no model without it",
@@ -138,35 +122,6 @@ pub(crate) fn unmeasured(robot: &Robot, logs: &[&RawLog]) -> Option<Finding> {
     };
     let place = Some(names.join(", "));
     Some(Finding { place, remedy: Some(remedy), ..contradiction(&text) })
-}
-
-fn off(values: &[f64], others: &[f64], joint: usize) -> f64 {
-    (values[joint] - others[joint]).abs()
-}
-
-/// How one signal follows another.
-struct Correlation {
-    /// The correlation, from -1 to 1; 0 if a signal is constant.
-    value: f64,
-    /// The factor of the one that is nearest to the other, both about their means.
-    gain: f64,
-}
-
-impl Correlation {
-    fn new(x: &[f64], y: &[f64]) -> Self {
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
-        let (mx, my) = (mean(x), mean(y));
-        let (mut xx, mut yy, mut xy) = (0.0, 0.0, 0.0);
-        for (x, y) in x.iter().zip(y) {
-            let (x, y) = (x - mx, y - my);
-            xx += x * x;
-            yy += y * y;
-            xy += x * y;
-        }
-        let size = (xx * yy).sqrt();
-        let value = if size > 0.0 { xy / size } else { 0.0 };
-        Self { value, gain: if xx > 0.0 { xy / xx } else { 0.0 } }
-    }
 }
 
 #[cfg(test)]

@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use reachtube_diagnose::Hypothesis;
 use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered,
 };
-use reachtube_identify::{IdentifySettings, Implausible, ModelSettings, WrongColumns, identify};
+use reachtube_identify::{IdentifySettings, Implausible, ModelSettings, identify};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
@@ -172,8 +173,8 @@ impl Evidence<'_> {
         let (robot, implausible_results) = self.identify(described, "identify")?;
         let nominal = self.prepared(&robot)?;
         let findings = implausible_results.iter().map(implausible).collect();
-        let swapped = |result: &Implausible| result.columns == Some(WrongColumns::Swapped);
-        let is_swapped = implausible_results.iter().any(swapped);
+        let mut columns = implausible_results.iter().map(|result| result.columns);
+        let is_swapped = columns.any(|fault| matches!(fault, Some(Hypothesis::Swap(..))));
         Ok(Nominal { is_identified: true, findings, is_swapped, ..nominal })
     }
 

@@ -83,4 +83,4 @@ pub use sensor_noise::noise_deviations;
 pub use source::{ReadOptions, RunSource, SuiteEntry};
 pub use state::{State, StateKind};
 pub use torque::Torque;
-pub use units::{check_limits, integral_gap};
+pub use units::{check_limits, dead_torques, integral_gap};

@@ -125,13 +125,26 @@ pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
     defects
 }
 
+/// Returns whether a joint (from 0) leaves its first position.
+fn moves(run: &Run, joint: usize) -> bool {
+    (0..run.len()).any(|k| (run.q(k)[joint] - run.q(0)[joint]).abs() > MIN_MOTION)
+}
+
+/// Returns the joints (from 0) that move while their torque is one value in all samples of all
+/// runs: it was not measured.
+#[must_use]
+pub fn dead_torques(runs: &[&Run]) -> Vec<usize> {
+    let samples = || runs.iter().flat_map(|run| (0..run.len()).map(|k| run.torque(k)));
+    let Some(first) = samples().next() else { return Vec::new() };
+    let is_dead = |joint: &usize| samples().all(|torque| torque[*joint] == first[*joint]);
+    let moving = (0..first.len()).filter(|joint| runs.iter().any(|run| moves(run, *joint)));
+    moving.filter(is_dead).collect()
+}
+
 /// Returns a defect for each joint that moves while its velocity is 0 in all samples; `fastest` has
 /// the largest |q̇| of each joint.
 fn dead_velocities(path: &Path, run: &Run, fastest: &[f64]) -> Vec<Defect> {
-    let moves = |joint: &usize| {
-        (0..run.len()).any(|k| (run.q(k)[*joint] - run.q(0)[*joint]).abs() > MIN_MOTION)
-    };
-    let dead = (0..run.joints).filter(|joint| fastest[*joint] == 0.0).filter(moves);
+    let dead = (0..run.joints).filter(|joint| fastest[*joint] == 0.0 && moves(run, *joint));
     let defect = |joint: usize| {
         let problem = "qd is 0 in every sample, although the joint moves".to_string();
         let remedy = "record the velocity, or delete the columns of qd; `model` derives them";

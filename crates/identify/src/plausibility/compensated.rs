@@ -1,10 +1,11 @@
 //! The size of compensated inputs, which shows a wrong unit.
 
-use crate::plausibility::scale::{number, unit_words};
+use crate::plausibility::implausible::Implausible;
+use crate::plausibility::scale::{number, wrong_unit};
 use crate::prepare::log::{PreparedLog, spread};
 use crate::samples::Sampling;
+use reachtube_diagnose::{Agreement, median};
 use reachtube_robot::Robot;
-use std::cmp::Ordering;
 
 /// Number of recordings that are looked at, at most.
 const LOGS: usize = 16;
@@ -25,38 +26,27 @@ pub(crate) fn input_unit_warning(
     robot: &Robot,
     logs: &[PreparedLog],
     sampling: &Sampling,
-) -> Option<String> {
+) -> Option<Implausible> {
     let n = robot.joint_count();
-    // Sums of squares of each joint's recorded and needed inputs.
-    let mut sums = vec![[0.0; 2]; n];
+    let mut joints = vec![Agreement::default(); n];
     for log in spread(logs, LOGS) {
         let moves = log.moving_mask(&sampling.slow, sampling.margin);
         for k in (0..log.len()).step_by(log.len().div_ceil(SAMPLES).max(1)) {
             let (q, qd) = (log.q(k), log.qd(k));
             let input = robot.input_from_motor_torque(q, qd, log.tau(k));
             let rigid = robot.inverse_dynamics(q, qd, log.qdd(k)) - robot.gravity_torque(q);
-            let model = &rigid + robot.viscous_torque(qd);
-            for j in (0..n).filter(|j| moves[k * n + j] && rigid[*j] != 0.0) {
-                sums[j][0] += input[j] * input[j];
-                sums[j][1] += model[j] * model[j];
-            }
+            let needed = &rigid + robot.viscous_torque(qd);
+            let moving = (0..n).filter(|j| moves[k * n + j] && rigid[*j] != 0.0);
+            moving.for_each(|j| joints[j].add(needed[j], input[j]));
         }
     }
     // The median, because filters leave some of the friction that was added near a turn.
-    let moving = sums.into_iter().filter(|[_, needed]| *needed > 0.0);
-    let mut times: Vec<f64> = moving.map(|[input, needed]| (input / needed).sqrt()).collect();
-    times.sort_by(f64::total_cmp);
-    let times = *times.get(times.len() / 2)?;
-    let side = if times > MOST_TIMES {
-        Ordering::Greater
-    } else if times < MOST_TIMES.recip() {
-        Ordering::Less
-    } else {
-        return None;
-    };
-    let (times, unit) = (number(times), unit_words(side, true));
-    Some(format!(
-        "the compensated inputs are {times} times the inputs that the description needs for these \
-         motions (median of the joints): {unit}"
-    ))
+    let times = median(joints.iter().filter_map(Agreement::ratio))?;
+    let clause = format!(
+        "the compensated inputs are {} times the inputs that the description needs for these \
+         motions (median of the joints)",
+        number(times)
+    );
+    let side = [MOST_TIMES.recip(), MOST_TIMES].map(|limit| times.total_cmp(&limit));
+    (side[0] == side[1]).then(|| wrong_unit(robot, &clause, side[0], true))
 }

@@ -10,5 +10,5 @@ pub(crate) mod validation;
 pub(crate) mod warnings;
 
 pub use gain::Gain;
-pub use implausible::{Implausible, WrongColumns};
+pub use implausible::Implausible;
 pub use offset::PositionOffset;

@@ -5,6 +5,7 @@ use crate::regression::residuals::{autocorrelation_time, root_mean_square};
 use crate::samples::{KnownTorque, Samples, Sampling};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rayon::prelude::*;
+use reachtube_diagnose::Hypothesis;
 use reachtube_robot::{BaseParameters, Parameter, Robot};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -159,19 +160,14 @@ impl<'a> OffsetSearch<'a> {
     pub(crate) fn reported(&self, offsets: &Offsets) -> Option<(Vec<PreparedLog>, String)> {
         let (at, estimate) = offsets.found?;
         let joint = &self.robot.joints()[at.joint];
-        let (name, unit, number) = (&joint.name, joint.kind.position_unit(), at.joint + 1);
+        let (name, unit) = (&joint.name, joint.kind.position_unit());
         let Estimate { offset, error } = estimate;
+        let [_, remedy] = Hypothesis::Offset(at.joint, offset).remedy();
         let (place, remedy) = match at.log {
-            None => (
-                String::new(),
-                format!(
-                    "correct the zero of q{number}, or the zero of the joint in the robot \
-                         description"
-                ),
-            ),
+            None => (String::new(), remedy),
             Some(log) => (
                 format!(" in {} against the other recordings", self.logs[log].name),
-                format!("correct q{number} there, or leave the recording out"),
+                format!("correct q{} there, or leave the recording out", at.joint + 1),
             ),
         };
         let warning = format!(

@@ -2,9 +2,11 @@
 
 use crate::inertia::columns::inertia_part;
 use crate::inertia::fit::InertiaFit;
+use crate::plausibility::implausible::Implausible;
 use crate::prepare::log::{PreparedLog, spread};
 use crate::regression::residuals::root_mean_square;
 use nalgebra::DVector;
+use reachtube_diagnose::Hypothesis;
 use reachtube_robot::{JointKind, Parameter, Regressor, Robot};
 use std::cmp::Ordering;
 
@@ -111,7 +113,7 @@ pub(super) fn torque_unit_warning(
     robot: &Robot,
     fit: &InertiaFit,
     logs: &[PreparedLog],
-) -> Option<String> {
+) -> Option<Implausible> {
     // Least squares: a prior far from the data would hide how far it is.
     let (columns, values) = inertia_part(&fit.columns, &fit.fit.solution.x);
     let found = Size::new(robot, &columns, &values, logs);
@@ -130,27 +132,24 @@ pub(super) fn torque_unit_warning(
         } else {
             found.gravity.1 / (gravity(robot) * length)
         };
-        let mass = number(mass);
-        return by_length.map(|side| {
-            format!(
-                "{clause}, as {mass} kg at the end of this arm of {length:.2} m would cause, \
-                 which no such arm has: {}",
-                unit_words(side, false)
-            )
-        });
+        let clause = format!(
+            "{clause}, as {} kg at the end of this arm of {length:.2} m would cause, which no such \
+             arm has",
+            number(mass)
+        );
+        return by_length.map(|side| wrong_unit(robot, &clause, side, false));
     }
     let limits = [MOST_TIMES.recip(), MOST_TIMES];
-    let by_description = found.side([described.gravity.1, described.inertia.1], limits);
-    by_description.map(|side| {
-        let cause = if by_length == Some(side) || length == 0.0 {
-            unit_words(side, false)
-        } else {
-            "arms of this length have such values; check the masses of the description, and the \
-             units of tau (N m), q (rad) and qd (rad/s)"
-                .into()
-        };
-        format!("{clause}, where the description has {}: {cause}", described.value(by_inertia))
-    })
+    let side = found.side([described.gravity.1, described.inertia.1], limits)?;
+    let clause = format!("{clause}, where the description has {}", described.value(by_inertia));
+    let mut found = wrong_unit(robot, &clause, side, false);
+    if by_length != Some(side) && length != 0.0 {
+        found.text = format!(
+            "{clause}: arms of this length have such values; check the masses of the description, \
+             and the units of tau (N m), q (rad) and qd (rad/s)"
+        );
+    }
+    Some(found)
 }
 
 /// Formats a positive number with three digits or so.
@@ -162,13 +161,21 @@ pub(super) fn number(value: f64) -> String {
     }
 }
 
-/// Returns the probable unit of the torques and the remedy.
+/// Makes the warning about a unit of the torques that makes values too large or too small, on which
+/// `side` they are.
 ///
 /// Gains would multiply the torque that controllers add as well.
-pub(super) fn unit_words(side: Ordering, compensated: bool) -> String {
-    let (unit, factor) = if side == Ordering::Greater { ("N mm", 0.001) } else { ("kN m", 1000.0) };
+pub(super) fn wrong_unit(
+    robot: &Robot,
+    clause: &str,
+    side: Ordering,
+    compensated: bool,
+) -> Implausible {
+    let unit = Hypothesis::TorqueUnit(if side == Ordering::Greater { 1e-3 } else { 1e3 });
+    let (probably, [_, remedy]) = (unit.probable_clause(robot), unit.remedy());
     let gains = if compensated { "" } else { ", for example with --gains or prepare.gains" };
-    format!("tau is probably in {unit}, not in N m; multiply the torques by {factor}{gains}")
+    let text = format!("{clause}: {probably}; {remedy}{gains}");
+    Implausible { text, columns: Some(unit) }
 }
 
 /// Returns the acceleration of gravity \[m/s²\].

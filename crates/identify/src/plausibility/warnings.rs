@@ -1,15 +1,13 @@
 use crate::fit::Fit;
 use crate::inertia::fit::InertiaFit;
 use crate::plausibility::compensated::input_unit_warning;
-use crate::plausibility::gain::{self, Gain, GainLikelihood, IMPLAUSIBLE_GAIN};
-use crate::plausibility::implausible::{Implausible, WrongColumns};
+use crate::plausibility::gain::{Gain, IMPLAUSIBLE_GAIN, gains};
+use crate::plausibility::implausible::Implausible;
 use crate::plausibility::offset::independent_columns;
 use crate::plausibility::scale::torque_unit_warning;
 use crate::prepare::log::{PreparedLog, spread};
 use crate::samples::{KnownTorque, Samples, Sampling};
-use reachtube_diagnose::{
-    Columns, FreeMisfit, Hypothesis, LikeliestFault, Signals, likeliest_fault,
-};
+use reachtube_diagnose::{FreeMisfit, Hypothesis, LikeliestFault, Signals, likeliest_fault};
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
@@ -51,22 +49,14 @@ impl Checked<'_> {
     /// about it: it is one if the gains agree without it.
     pub(crate) fn warnings(
         &self,
-        likelihood: &GainLikelihood,
         gains: &[Gain],
         offset: impl FnOnce() -> Option<(Vec<PreparedLog>, String)>,
     ) -> Vec<Implausible> {
-        let driving: Vec<String> = self.driving_friction().collect();
         let gains: Vec<String> = gains.iter().filter_map(wrong_gain).collect();
-        let unexplained: Vec<String> = self.unexplained_torque().collect();
-        let inverted = || {
-            let (joint, share) = likelihood.inverted_torque()?;
-            let fault = Hypothesis::Sign(joint, Columns::Torque);
-            Some(fault.warning(self.robot, (joint, share)))
-        };
         let found = self.likeliest_fault();
         // Degrees make all masses meaningless.
-        let torque_unit = if found.as_ref().is_some_and(|found| found.fault == Hypothesis::Degrees)
-        {
+        let are_degrees = found.as_ref().is_some_and(|found| found.fault == Hypothesis::Degrees);
+        let torque_unit = if are_degrees {
             None
         } else if self.compensated {
             input_unit_warning(self.robot, self.logs, self.sampling)
@@ -74,28 +64,21 @@ impl Checked<'_> {
             torque_unit_warning(self.robot, self.fit, self.logs)
         };
         let has_no_unit = self.compensated && torque_unit.is_some();
-        let implausible = |columns| move |text: String| Implausible { text, columns };
-        let fault = found
-            .map(|found| {
-                let text = found.fault.warning(self.robot, found.clearest);
-                Implausible { text, columns: WrongColumns::of(&found.fault) }
-            })
-            .or_else(|| {
-                if has_no_unit { None } else { inverted() }
-                    .map(implausible(Some(WrongColumns::Sign)))
-            })
-            .or_else(|| {
-                let (logs, warning) = if has_no_unit { None } else { offset() }?;
-                let is_one = gains.is_empty() || self.gains_agree(&logs);
-                is_one.then(|| implausible(None)(warning))
-            });
+        let offset = || {
+            let (logs, warning) = if has_no_unit { None } else { offset() }?;
+            let is_one = gains.is_empty() || self.gains_agree(&logs);
+            is_one.then(|| Implausible::new(warning))
+        };
+        let fault = found.map(|LikeliestFault { fault, clearest, .. }| {
+            // Zeros and clocks of robots are off a little.
+            let is_small = matches!(fault, Hypothesis::Offset(..) | Hypothesis::Lag(..));
+            let text = fault.warning(self.robot, clearest);
+            Implausible { text, columns: (!is_small).then_some(fault) }
+        });
+        let fault = fault.or_else(offset);
         let gains = if fault.is_some() || has_no_unit { Vec::new() } else { gains };
-        let others = driving.into_iter().chain(gains).chain(unexplained);
-        fault
-            .into_iter()
-            .chain(torque_unit.map(implausible(Some(WrongColumns::Unit))))
-            .chain(others.map(implausible(None)))
-            .collect()
+        let others = self.driving_friction().chain(gains).chain(self.unexplained_torque());
+        fault.into_iter().chain(torque_unit).chain(others.map(Implausible::new)).collect()
     }
 
     /// Returns the fault of the columns that explains the torque best, if one does.
@@ -117,8 +100,7 @@ impl Checked<'_> {
         let columns = &self.fit.columns;
         let samples = Samples::in_motion(self.robot, columns, logs, self.sampling, self.known);
         let joints = &Fit::of_groups(&[&samples], false).joints[0];
-        let likelihood = GainLikelihood::new(&samples, joints);
-        gain::gains(self.robot, &samples, &likelihood).iter().all(|gain| wrong_gain(gain).is_none())
+        gains(self.robot, &samples, joints).iter().all(|gain| wrong_gain(gain).is_none())
     }
 
     fn name(&self, joint: usize) -> &str {

@@ -94,7 +94,7 @@ fn degrees_are_named() {
     for described in [arm(), geometry(&arm())] {
         let found = warnings(&described, true, [180.0 / PI, 1.0]);
         assert_named(&found, &["q and qd are probably in degrees", "convert the columns q and qd"]);
-        assert!(!found.iter().any(|warning| warning.contains("tau is probably")), "{found:?}");
+        assert!(!found.iter().any(|warning| warning.contains("torques are probably")), "{found:?}");
     }
 }
 
@@ -104,8 +104,8 @@ fn degrees_are_named() {
 fn compensated_inputs_in_another_unit_are_named_alone() {
     let units = [
         (1.0, None),
-        (1e3, Some(["tau is probably in N mm", "multiply the torques by 0.001"])),
-        (1e-3, Some(["tau is probably in kN m", "multiply the torques by 1000"])),
+        (1e3, Some(["the torques are probably in N mm", "multiply the torques by 0.001"])),
+        (1e-3, Some(["the torques are probably in kN m", "multiply the torques by 1000"])),
     ];
     for (factor, words) in units {
         let arm = arm();

@@ -20,10 +20,8 @@ use crate::defect::{Defect, DefectKind};
 use crate::run::Run;
 use crate::source::ReadOptions;
 use crate::text::quoted;
+use crate::units::dead_torques;
 use crate::unwrap::take_out_turns;
-
-/// A joint that leaves its first position by more than this moves, rad or m.
-const MOVES: f64 = 0.05;
 
 /// No quantity of a joint is beyond these in any unit.
 const POSSIBLE: [f64; 2] = [-1e9, 1e9];
@@ -216,7 +214,7 @@ impl Log<'_> {
         if qd.is_none() {
             differentiate(&mut run);
         }
-        let dead = tau.is_some().then(|| dead_torques(&run, &assignment.joints)).flatten();
+        let dead = tau.is_some().then(|| dead_torque_note(&run, &assignment.joints)).flatten();
         notes.extend(torque_note(assignment).into_iter().chain(dead).map(named));
         let understood = Understood::new(files, &self.dialects[0], assignment, units, &run);
         Ok(Logged { run, understood: Some(understood), notes })
@@ -301,13 +299,9 @@ fn check_times(files: &[PathBuf], tables: &[Table]) -> Result<(), Box<Defect>> {
     Ok(())
 }
 
-/// Names the joints that move while their torque stays the same.
-fn dead_torques(run: &Run, joints: &[String]) -> Option<String> {
-    let samples = || 1..run.len();
-    let moves =
-        |joint: &usize| samples().any(|k| (run.q(k)[*joint] - run.q(0)[*joint]).abs() > MOVES);
-    let is_dead = |joint: &usize| samples().all(|k| run.torque(k)[*joint] == run.torque(0)[*joint]);
-    let dead: Vec<usize> = (0..run.joints).filter(moves).filter(is_dead).collect();
+/// Names the joints whose torques were not measured.
+fn dead_torque_note(run: &Run, joints: &[String]) -> Option<String> {
+    let dead = dead_torques(&[run]);
     let names: Vec<&str> = dead.iter().map(|i| joints[*i].as_str()).collect();
     Some(format!(
         "the torque of {} is {} in every sample, although the joint moves: it was not measured, \
