@@ -6,9 +6,11 @@
 //! - [`RobotMisfit`] compares the recorded input with the one that a known robot needs.
 //! - [`FreeMisfit`] leaves the robot's parameters free.
 //!
-//! [`Agreement`] is the measure of how recorded torques follow the ones that a robot needs.
+//! [`Agreement`] is the measure of how recorded torques follow the ones that a robot needs, and
+//! [`input`] what recorded torques mean for a robot.
 
 mod agreement;
+mod axes;
 mod change;
 mod free_misfit;
 mod hypothesis;
@@ -17,6 +19,7 @@ mod reading;
 mod robot_misfit;
 
 pub use agreement::{Agreement, median};
+pub use axes::{axes, input};
 pub use change::Change;
 pub use free_misfit::{FreeMisfit, Signals};
 pub use hypothesis::{Columns, Hypothesis};

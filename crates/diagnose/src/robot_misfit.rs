@@ -3,6 +3,7 @@ use reachtube_recordings::{Run, Torque};
 use reachtube_robot::Robot;
 
 use crate::agreement::Agreement;
+use crate::axes::input;
 use crate::change::Change;
 
 /// Number of samples of each run that are looked at, at most.
@@ -130,7 +131,7 @@ impl<'a> RobotMisfit<'a> {
             return self.softened_input(run, k, half, &torques);
         }
         let (q, qd) = (change.q(run.q(k)), change.rates(run.qd(k)));
-        change.torque.input(self.robot, &q, &qd, &torques)
+        input(change.torque, self.robot, &q, &qd, &torques)
     }
 
     /// Returns the motor torques `torques`, the means around sample `k`, less gravity and softened

@@ -112,7 +112,7 @@ impl<'a> LoggedRuns<'a> {
     ) -> Result<()> {
         let joints = self.options.robot.map_or_else(
             || settings.joints.clone(),
-            |robot| robot.joints().iter().map(|joint| joint.name.clone()).collect(),
+            |robot| robot.iter().map(|axis| axis.name.clone()).collect(),
         );
         let logs = [Log::read(path, &LogOptions::new(settings, &joints)?)?];
         let cutting = settings.marker.as_ref().map_or(Cutting::Whole, |_| Cutting::Marked);
@@ -158,7 +158,7 @@ fn entry(path: &Path, line: u64, content: &Content) -> RunEntry {
 impl LoggedRuns<'_> {
     /// Returns the run unless its numbers cannot be in the units of the robot, if one is named.
     fn checked(&self, file: &Path, run: Run) -> Result<Run, Vec<Defect>> {
-        let robot = self.options.robot.filter(|robot| robot.joint_count() == run.joints);
+        let robot = self.options.robot.filter(|robot| robot.len() == run.joints);
         match robot.map(|robot| check_limits(file, &run, robot)) {
             Some(defects) if !defects.is_empty() => Err(defects),
             _ => Ok(run),

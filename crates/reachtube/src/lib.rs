@@ -10,6 +10,7 @@ pub use reachtube_conform::{
     self as conform, Check, Conformance, Keep, Model, Problem, Progress, Settings, Setup, Silent,
     Tube, check, conform, reach,
 };
+pub use reachtube_diagnose::axes;
 pub use reachtube_files::{TOOL, write};
 pub use reachtube_finding as finding;
 pub use reachtube_identify::{self as identify, Identification, identify};

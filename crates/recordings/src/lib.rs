@@ -9,7 +9,7 @@
 //!   index `runs.csv`; [`MemoryRuns`] holds runs in memory.
 //! - Reading refuses a recording with a [`Defect`], and reports every one with line, joint and
 //!   remedy. [`check_limits`] finds wrong units; [`run_notes`] and [`copies_note`] return notes.
-//! - [`Torque`] states what the recorded torques mean and returns the input u of the model.
+//! - [`Torque`] states what the recorded torques mean.
 //! - [`inspect()`] summarises a data set.
 //! - [`read_logged`] reads CSV files of any header, as robots and drivers log them, by the same
 //!   reader of numbers and defects.
@@ -33,6 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod axis;
 mod checked;
 mod data_set;
 mod decimal;
@@ -60,6 +61,7 @@ mod torque;
 mod units;
 mod unwrap;
 
+pub use axis::Axis;
 pub use data_set::{DataSet, any_simulated, index_folder};
 pub use decimal::picoseconds;
 pub use defect::{Defect, DefectKind};

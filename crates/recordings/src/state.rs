@@ -2,7 +2,6 @@ use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
-use reachtube_robot::JointKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -16,12 +15,12 @@ pub enum StateKind {
 }
 
 impl StateKind {
-    /// Returns the unit in which states of this kind are recorded for a joint.
+    /// Returns the unit of this kind among the units of a joint's position, velocity and torque.
     #[must_use]
-    pub fn unit(self, joint: JointKind) -> &'static str {
+    pub fn unit(self, [position, velocity, _]: [&'static str; 3]) -> &'static str {
         match self {
-            Self::Position => joint.position_unit(),
-            Self::Velocity => joint.velocity_unit(),
+            Self::Position => position,
+            Self::Velocity => velocity,
         }
     }
 

@@ -4,8 +4,7 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use reachtube_robot::{JointDescription, JointKind, Robot};
-
+use crate::axis::Axis;
 use crate::defect::{Defect, DefectKind};
 use crate::gap_limit::GapLimit;
 use crate::run::Run;
@@ -110,17 +109,16 @@ pub(crate) fn time_defect(path: &Path, run: &Run) -> Option<Defect> {
 ///
 /// # Panics
 ///
-/// Panics if the robot and the run differ in their number of joints.
+/// Panics if there are fewer axes than joints of the run.
 #[must_use]
-pub fn check_limits(path: &Path, run: &Run, robot: &Robot) -> Vec<Defect> {
-    let mut defects = ratio_defects(path, run, &robot.kinds());
+pub fn check_limits(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
+    let mut defects = ratio_defects(path, run, axes);
     if defects.is_empty() {
         defects.extend(time_defect(path, run));
     }
     let furthest = largest_magnitudes(&run.states, 2 * run.joints);
-    defects.extend(position_defects(path, &furthest[..run.joints], robot));
-    defects.extend(velocity_defects(path, &furthest[run.joints..], robot));
-    defects.extend(torque_defects(path, run, &robot.kinds()));
+    defects.extend(beyond_limits(path, &furthest, axes));
+    defects.extend(torque_defects(path, run, axes));
     defects.extend(dead_velocities(path, run, &furthest[run.joints..]));
     defects
 }
@@ -163,12 +161,12 @@ pub(crate) fn largest_magnitudes(rows: &[f64], width: usize) -> Vec<f64> {
 }
 
 /// Returns a defect for each joint with a torque that no joint has.
-fn torque_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
+fn torque_defects(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
     let largest = largest_magnitudes(&run.torques, run.joints);
     let defect = |joint: usize| {
         let sample = (0..run.len()).find(|&k| run.torque(k)[joint].abs() > LARGEST_TORQUE)?;
         let (torque, time) = (run.torque(sample)[joint], run.times[sample]);
-        let unit = kinds[joint].force_unit();
+        let [_, _, unit] = axes[joint].units;
         let problem = format!(
             "tau is {torque:e} {unit} at {time} s after the first sample, which no joint has"
         );
@@ -180,13 +178,10 @@ fn torque_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
 
 /// Returns a defect for each joint of which q or q̇, but not both, looks like degrees, or like mm
 /// for a prismatic joint.
-fn ratio_defects(path: &Path, run: &Run, kinds: &[JointKind]) -> Vec<Defect> {
+fn ratio_defects(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
     let defect = |(joint, slope): (usize, f64)| {
-        let (ratio, other) = match kinds[joint] {
-            JointKind::Revolute => (PI.recip() * 180.0, "degrees"),
-            JointKind::Prismatic => (1000.0, "mm"),
-        };
-        let (unit, speed) = (kinds[joint].position_unit(), kinds[joint].velocity_unit());
+        let ratio = if axes[joint].is_revolute { PI.recip() * 180.0 } else { 1000.0 };
+        let (other, [unit, speed, _]) = (axes[joint].other_unit(), axes[joint].units);
         let guess = if (slope / ratio - 1.0).abs() < UNIT_TOLERANCE {
             format!("q looks like {other} and qd like {speed}")
         } else if (slope * ratio - 1.0).abs() < UNIT_TOLERANCE {
@@ -205,48 +200,35 @@ fn size(value: f64) -> String {
     if value < 1e6 { format!("{value:.3}") } else { format!("{value:.1e}") }
 }
 
-/// Returns a defect for each joint whose position is far beyond its limits; `furthest` has the
-/// largest |q| of each joint.
-fn position_defects(path: &Path, furthest: &[f64], robot: &Robot) -> Vec<Defect> {
-    let joints = robot.description().joints.iter().enumerate();
-    let defect = |(joint, description): (usize, &JointDescription)| {
-        let [low, high] = description.position_limits?;
-        let furthest = furthest[joint];
-        (furthest > LIMIT_FACTOR * low.abs().max(high.abs())).then(|| {
-            let unit = description.kind.position_unit();
-            let problem = format!(
-                "|q| reaches {}, but the joint's limits are {low} and {high} {unit}",
-                size(furthest)
-            );
-            let guess = match description.kind {
-                JointKind::Revolute => "it may be in degrees: ",
-                JointKind::Prismatic => "it may be in mm: ",
-            };
-            let remedy = format!(
-                "{guess}give q in {unit}, or correct the limits in the robot's description"
-            );
-            joint_defect(path, joint, problem, &remedy)
-        })
+/// Returns a defect for each joint whose positions, and one for each whose velocities are far beyond
+/// its limits; `furthest` has the largest |q| and |q̇| of each joint.
+fn beyond_limits(path: &Path, furthest: &[f64], axes: &[Axis]) -> Vec<Defect> {
+    let (positions, velocities) = furthest.split_at(furthest.len() / 2);
+    let far = |furthest: f64, limit: f64| furthest > LIMIT_FACTOR * limit;
+    let position = |(joint, (axis, furthest)): (usize, (&Axis, &f64))| {
+        let [low, high] = axis.position_limits?;
+        let [unit, ..] = axis.units;
+        let problem = format!(
+            "|q| reaches {}, but the joint's limits are {low} and {high} {unit}",
+            size(*furthest)
+        );
+        let remedy = format!(
+            "it may be in {}: give q in {unit}, or correct the limits in the robot's description",
+            axis.other_unit()
+        );
+        let is_far = far(*furthest, low.abs().max(high.abs()));
+        is_far.then(|| joint_defect(path, joint, problem, &remedy))
     };
-    joints.filter_map(defect).collect()
-}
-
-/// Returns a defect for each joint whose velocity is far beyond its limit; `fastest` has the
-/// largest |q̇| of each joint.
-fn velocity_defects(path: &Path, fastest: &[f64], robot: &Robot) -> Vec<Defect> {
-    let defect = |joint: usize| {
-        let limit = robot.joints()[joint].velocity_limit?;
-        let fastest = fastest[joint];
-        (fastest > LIMIT_FACTOR * limit).then(|| {
-            let unit = robot.joints()[joint].kind.velocity_unit();
-            let problem =
-                format!("qd reaches {}, but the joint's limit is {limit} {unit}", size(fastest));
-            let remedy =
-                format!("give qd in {unit}, or correct the limit in the robot's description");
-            joint_defect(path, joint, problem, &remedy)
-        })
+    let velocity = |(joint, (axis, fastest)): (usize, (&Axis, &f64))| {
+        let limit = axis.velocity_limit?;
+        let [_, unit, _] = axis.units;
+        let problem =
+            format!("qd reaches {}, but the joint's limit is {limit} {unit}", size(*fastest));
+        let remedy = format!("give qd in {unit}, or correct the limit in the robot's description");
+        far(*fastest, limit).then(|| joint_defect(path, joint, problem, &remedy))
     };
-    (0..fastest.len()).filter_map(defect).collect()
+    let first = axes.iter().zip(positions).enumerate().filter_map(position);
+    first.chain(axes.iter().zip(velocities).enumerate().filter_map(velocity)).collect()
 }
 
 fn joint_defect(path: &Path, joint: usize, problem: String, remedy: &str) -> Defect {
@@ -257,14 +239,18 @@ fn joint_defect(path: &Path, joint: usize, problem: String, remedy: &str) -> Def
 mod tests {
     use std::path::Path;
 
-    use reachtube_robot::Robot;
-
     use super::check_limits;
+    use crate::axis::Axis;
     use crate::run::Run;
+
+    fn axes() -> Vec<Axis> {
+        let units = ["rad", "rad/s", "N m"];
+        let (name, position_limits, velocity_limit) = (String::new(), None, Some(1.2));
+        vec![Axis { name, is_revolute: true, units, position_limits, velocity_limit }; 6]
+    }
 
     #[test]
     fn a_velocity_of_zero_of_a_joint_that_moves_is_a_defect() {
-        let robot = Robot::lwa4p();
         let words = |velocity: f64| {
             let state = |k: usize| {
                 let mut state = vec![0.0; 12];
@@ -274,7 +260,7 @@ mod tests {
             };
             let states = (0..3).flat_map(state).collect();
             let run = Run::new(6, vec![0.0, 0.1, 0.2], states, vec![1.0; 18]).unwrap();
-            let defects = check_limits(Path::new("run.csv"), &run, &robot);
+            let defects = check_limits(Path::new("run.csv"), &run, &axes());
             defects.iter().map(ToString::to_string).collect::<String>()
         };
         assert_eq!(words(1.0), "");
@@ -284,7 +270,6 @@ mod tests {
 
     #[test]
     fn times_in_another_unit_are_a_defect() {
-        let robot = Robot::lwa4p();
         // The second joint hardly moves, and its velocity has an offset.
         let words = |per_second: f64, moving: usize| {
             let state = |k: usize| {
@@ -295,7 +280,7 @@ mod tests {
             let times = (0..20).map(|k| 0.1 * k as f64 * per_second).collect();
             let states = (0..20).flat_map(state).collect();
             let run = Run::new(6, times, states, vec![1.0; 120]).unwrap();
-            let defects = check_limits(Path::new("run.csv"), &run, &robot);
+            let defects = check_limits(Path::new("run.csv"), &run, &axes());
             defects.iter().map(ToString::to_string).collect::<Vec<_>>()
         };
         assert_eq!(words(1.0, 5), [""; 0]);
@@ -311,14 +296,13 @@ mod tests {
 
     #[test]
     fn a_torque_that_no_joint_has_is_a_defect() {
-        let robot = Robot::lwa4p();
         let mut torques = vec![1.0; 18];
         let run = |torques: &[f64]| {
             Run::new(6, vec![0.0, 0.1, 0.2], vec![0.0; 36], torques.to_vec()).unwrap()
         };
-        assert_eq!(check_limits(Path::new("run.csv"), &run(&torques), &robot), []);
+        assert_eq!(check_limits(Path::new("run.csv"), &run(&torques), &axes()), []);
         torques[8] = 1e300;
-        let defects = check_limits(Path::new("run.csv"), &run(&torques), &robot);
+        let defects = check_limits(Path::new("run.csv"), &run(&torques), &axes());
         let words = defects.iter().map(ToString::to_string).collect::<String>();
         assert!(defects.len() == 1, "{words}");
         assert!(words.contains("joint 3") && words.contains("1e300 N m at 0.1 s"), "{words}");

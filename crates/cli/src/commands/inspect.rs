@@ -73,10 +73,10 @@ fn is_logs(path: &Path) -> bool {
 /// Summarises logs, and what was understood of each.
 fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
     let robot = args.robot.as_ref().map(|name| args.lock.load_to_identify(name)).transpose()?;
-    let robot = robot.as_ref();
+    let axes = robot.as_ref().map(reachtube::axes);
     let columns = args.log.columns.clone().unwrap_or_default();
     let options = LoggedOptions {
-        robot,
+        robot: axes.as_deref(),
         joints: &[],
         columns: &columns,
         gains: false,
@@ -88,7 +88,7 @@ fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
     let found = inspect_logs(&args.data, &options, &args.log.settings())?;
     drop(bar);
     let joints = found.inspection.joints;
-    let kinds = robot.map_or(vec![JointKind::Revolute; joints], Robot::kinds);
+    let kinds = robot.as_ref().map_or(vec![JointKind::Revolute; joints], Robot::kinds);
     output::notes(&found.inspection.notes);
     output::show(json, &found, || {
         format!("{}{}", understood(&found.logs), summary(&found.inspection, &kinds))

@@ -1,6 +1,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use reachtube_diagnose::axes;
 use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Defect, Run, Torque, check_limits};
 use reachtube_robot::Robot;
@@ -21,7 +22,7 @@ pub(super) fn input(
     robot: &Robot,
     torque: Torque,
 ) -> Result<RunInput, Vec<Defect>> {
-    let defects = check_limits(path, run, robot);
+    let defects = check_limits(path, run, &axes(robot));
     if !defects.is_empty() {
         return Err(defects);
     }
@@ -32,7 +33,8 @@ pub(super) fn input(
     let mut inputs = match torque {
         Torque::Compensated => run.torques.clone(),
         Torque::Motor | Torque::Link => {
-            let input = |k| torque.input(robot, run.q(k), run.qd(k), run.torque(k));
+            let input =
+                |k| reachtube_diagnose::input(torque, robot, run.q(k), run.qd(k), run.torque(k));
             (0..run.len()).flat_map(input).collect()
         }
     };

@@ -9,7 +9,7 @@ use crate::arm::arm::Arm;
 use crate::arm::delayed::Delayed;
 use crate::data::live_input::LiveInput;
 
-/// Evaluates the input of an arm as [`Torque::input`] does.
+/// Evaluates the input of an arm as [`reachtube_diagnose::input`] does.
 #[derive(Debug)]
 pub(super) struct ArmInput {
     evaluation: Evaluation,

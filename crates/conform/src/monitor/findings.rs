@@ -19,7 +19,7 @@ impl Leave {
             Side::Lower => "below",
         };
         let rounding = if self.proved { "" } else { ", within rounding" };
-        let unit = state.kind.unit(kind);
+        let unit = state.kind.unit(kind.recorded_units());
         let text = format!(
             "{time:.4} s: {name} left its set: {state} is {excess:.2e} {unit} {side} \
              it{rounding}, in the window from {window:.4} s"

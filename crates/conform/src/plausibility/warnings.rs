@@ -74,7 +74,7 @@ fn of_state(
     i: usize,
 ) -> Vec<Remark> {
     let state = State::from_index(i, problem.joints());
-    let unit = state.kind.unit(problem.robot().kinds()[state.joint]);
+    let unit = state.kind.unit(problem.robot().kinds()[state.joint].recorded_units());
     let [low, high] = fit.recorded[i];
     let (range, sensor) = (high - low, problem.sensor_noise().radius[i]);
     let (from, to) = sets.initial_set.bounds(i);

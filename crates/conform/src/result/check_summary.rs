@@ -119,7 +119,7 @@ fn table_of_suites(failing: &[&SuiteVerdict], kinds: &[JointKind]) -> Table {
     let row = |suite: &&SuiteVerdict| {
         let worst = suite.violations.worst.as_ref();
         let place = worst.map(|worst| {
-            let unit = worst.state.kind.unit(kinds[worst.state.joint]);
+            let unit = worst.state.kind.unit(kinds[worst.state.joint].recorded_units());
             let excess = two_digits_up(worst.excess);
             // A window is a suite of one run, whose name the first column has.
             let run = match worst.run == suite.suite {

@@ -159,7 +159,7 @@ fn touching(model: &Model) -> Section {
     let is_plain = kinds.iter().all(|kind| *kind == JointKind::Revolute);
     let unit = |state: &State| match is_plain {
         true => String::new(),
-        false => format!(" {}", state.kind.unit(kinds[state.joint])),
+        false => format!(" {}", state.kind.unit(kinds[state.joint].recorded_units())),
     };
     let row = |place: &Witness| {
         vec![

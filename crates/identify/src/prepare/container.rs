@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
+use reachtube_diagnose::axes;
 use reachtube_logs::{Cut, Cutting, Log, LogOptions, convert};
 use reachtube_recordings::{
     Error as RecordingsError, GapLimit, ReadOptions, Run, RunSource, check_limits,
@@ -36,7 +37,7 @@ pub(crate) fn marked(
     let runs = runs(&logs, &cuts, None, settings)?;
     let mut found = Vec::new();
     for (number, (run, cut)) in runs.into_iter().zip(&cuts).enumerate() {
-        let defects = check_limits(path, &run, robot);
+        let defects = check_limits(path, &run, &axes(robot));
         if !defects.is_empty() {
             return Err(RecordingsError::Defects(defects).into());
         }

@@ -4,6 +4,7 @@ use crate::prepare::entry::LogEntry;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::settings::PrepareSettings;
 use crate::prepare::turns::{add_turns, extents, missing_turns};
+use reachtube_diagnose::axes;
 use reachtube_logs::LogFiles;
 use reachtube_recordings::{Defect, LoggedOptions, Run, check_limits, read_logged};
 use reachtube_robot::Robot;
@@ -162,7 +163,7 @@ impl Source {
     ) -> Result<(Run, Vec<String>)> {
         check_names(robot, &settings.joints)?;
         let options = LoggedOptions {
-            robot: Some(robot),
+            robot: Some(&axes(robot)),
             joints: &settings.joints,
             columns: &settings.columns,
             gains: !settings.gains.is_empty(),
@@ -177,7 +178,7 @@ impl Source {
 
 /// Checks limits and times of a recording.
 fn check(file: &Path, run: &Run, robot: &Robot) -> Result<()> {
-    match check_limits(file, run, robot) {
+    match check_limits(file, run, &axes(robot)) {
         defects if defects.is_empty() => Ok(()),
         defects => Err(refused(defects)),
     }

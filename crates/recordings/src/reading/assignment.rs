@@ -300,8 +300,8 @@ impl Finder<'_> {
             return (problem, REMEDY.into());
         };
         let lock = |name: &&str| {
-            let joint = robot.description().joints.iter().find(|joint| joint.name == **name);
-            let [low, high] = joint.and_then(|joint| joint.position_limits).unwrap_or([0.0, 0.0]);
+            let axis = robot.iter().find(|axis| axis.name == **name);
+            let [low, high] = axis.and_then(|axis| axis.position_limits).unwrap_or([0.0, 0.0]);
             format!("--lock {name}={}", 0.0f64.clamp(low.min(high), high.max(low)))
         };
         let locks: Vec<String> = names.iter().map(lock).collect();

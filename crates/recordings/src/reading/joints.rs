@@ -44,7 +44,7 @@ pub(super) type Matched = (Vec<Column>, Vec<Column>);
 impl Joints {
     /// Returns the joints of the robot, if one is given.
     pub(super) fn of_robot(options: &LoggedOptions) -> Option<Self> {
-        let joints = options.robot?.joints();
+        let joints = options.robot?;
         let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
         let place = |(at, name): (usize, &String)| {
             options.joints.iter().position(|other| other == name).unwrap_or(at)

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use reachtube_files::hex;
-use reachtube_robot::{JointKind, Robot};
 use sha2::{Digest, Sha256};
 
 use super::assignment::{Assignment, TorqueKind, assign};
@@ -112,7 +111,7 @@ fn as_it_is(
     dialect: &Dialect,
     options: &LoggedOptions,
 ) -> Result<Logged, Vec<Defect>> {
-    let joints = options.robot.map(Robot::joint_count);
+    let joints = options.robot.map(<[_]>::len);
     let read = ReadOptions { joints, gap_limit: options.gap_limit, until: None };
     let of_robot = Joints::of_robot(options).unwrap_or_default();
     let (mut run, table) =
@@ -133,7 +132,7 @@ fn turn_notes(
     joints: &[String],
     options: &LoggedOptions,
 ) -> Vec<String> {
-    let kinds = kinds(options, run.joints);
+    let (n, is_revolute) = (run.joints, revolute(options, run.joints));
     let note = |joint: usize| {
         let jumps = take_out_turns(run, joint);
         let first = *jumps.first()?;
@@ -149,12 +148,12 @@ fn turn_notes(
             }
         ))
     };
-    let revolute = (0..kinds.len()).filter(|joint| kinds[*joint] == JointKind::Revolute);
-    revolute.filter_map(note).collect()
+    (0..n).filter(|joint| is_revolute[*joint]).filter_map(note).collect()
 }
 
-fn kinds(options: &LoggedOptions, joints: usize) -> Vec<JointKind> {
-    options.robot.map_or(vec![JointKind::Revolute; joints], Robot::kinds)
+/// Returns whether each joint is revolute, as all are without a robot.
+fn revolute(options: &LoggedOptions, joints: usize) -> Vec<bool> {
+    options.robot.map_or(vec![true; joints], |axes| axes.iter().map(|of| of.is_revolute).collect())
 }
 
 /// A log whose columns are known.
@@ -176,12 +175,12 @@ impl Log<'_> {
         let mut qd = assignment.qd.as_ref().map(columns);
         let tau = assignment.tau.as_ref().map(|(list, _)| columns(list));
         let n = q.len();
-        let kinds = kinds(options, n);
-        let units = self.units(&kinds, &tables[0], &q, qd.as_deref());
+        let revolute = revolute(options, n);
+        let units = self.units(&revolute, &tables[0], &q, qd.as_deref());
         let units = units.map_err(|[problem, remedy]| {
             vec![Defect::new(&files[0], None, problem, remedy).of_kind(DefectKind::Units)]
         })?;
-        for joint in (0..n).filter(|joint| kinds[*joint] == JointKind::Revolute) {
+        for joint in (0..n).filter(|joint| revolute[*joint]) {
             scale(&mut q[joint], units.q.per_radian());
             qd.iter_mut().for_each(|qd| scale(&mut qd[joint], units.qd.per_radian()));
         }
@@ -252,25 +251,23 @@ impl Log<'_> {
 
     fn units(
         &self,
-        kinds: &[JointKind],
+        revolute: &[bool],
         table: &Table,
         q: &[Vec<f64>],
         qd: Option<&[Vec<f64>]>,
     ) -> Result<Units, [String; 2]> {
-        let revolute: Vec<bool> = kinds.iter().map(|kind| *kind == JointKind::Revolute).collect();
         let furthest = |[low, high]: [f64; 2]| low.abs().max(high.abs());
-        let (mut limits, mut speeds) = (vec![None; kinds.len()], vec![None; kinds.len()]);
-        if let Some(robot) = self.options.robot {
-            let joints = robot.description().joints.iter();
-            limits = joints.map(|joint| joint.position_limits.map(furthest)).collect();
-            speeds = robot.joints().iter().map(|joint| joint.velocity_limit).collect();
+        let (mut limits, mut speeds) = (vec![None; q.len()], vec![None; q.len()]);
+        if let Some(axes) = self.options.robot {
+            limits = axes.iter().map(|axis| axis.position_limits.map(furthest)).collect();
+            speeds = axes.iter().map(|axis| axis.velocity_limit).collect();
         }
         let numbers = Numbers {
             times: &table.seconds(1),
             first: table.time(0).unwrap_or_default() as f64 / 1e12,
             q,
             qd,
-            revolute: &revolute,
+            revolute,
             limits: &limits,
             speeds: &speeds,
         };

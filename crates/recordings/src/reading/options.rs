@@ -1,14 +1,13 @@
-use reachtube_robot::Robot;
-
 use super::settings::ColumnSettings;
+use crate::axis::Axis;
 use crate::gap_limit::GapLimit;
 
 /// How logs are read.
 #[derive(Debug, Clone, Copy)]
 pub struct LoggedOptions<'a> {
-    /// The robot, whose joints the columns are matched with. Without it, the positions of a log are
-    /// its joints.
-    pub robot: Option<&'a Robot>,
+    /// The robot's joints, which the columns are matched with. Without them, the positions of a log
+    /// are its joints.
+    pub robot: Option<&'a [Axis]>,
     /// Names of the robot's joints in the order of numbered columns; empty for the robot's order.
     pub joints: &'a [String],
     /// Names and units of columns that the user gives.

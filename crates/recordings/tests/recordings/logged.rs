@@ -5,14 +5,25 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use reachtube_recordings::{
-    ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, read_logged,
+    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, read_logged,
 };
-use reachtube_robot::Robot;
 use tempfile::TempDir;
 
 const SAMPLES: usize = 200;
 
-fn options<'a>(robot: Option<&'a Robot>, columns: &'a ColumnSettings) -> LoggedOptions<'a> {
+/// Returns six joints with the limits of the Schunk LWA 4P.
+fn arm() -> Vec<Axis> {
+    let axis = |number: usize| Axis {
+        name: format!("joint{number}"),
+        is_revolute: true,
+        units: ["rad", "rad/s", "N m"],
+        position_limits: None,
+        velocity_limit: Some(1.2),
+    };
+    (1..=6).map(axis).collect()
+}
+
+fn options<'a>(robot: Option<&'a [Axis]>, columns: &'a ColumnSettings) -> LoggedOptions<'a> {
     LoggedOptions {
         robot,
         joints: &[],
@@ -107,7 +118,7 @@ fn check(logged: &Logged) {
 
 #[test]
 fn dialects_of_many_drivers_are_one_recording() {
-    let robot = Robot::lwa4p();
+    let robot = arm();
     let columns = ColumnSettings::default();
     let rtde = ["actual_q_{}", "actual_dq_{}", "target_moment_{}"];
     let dialects = [
@@ -171,7 +182,7 @@ fn times_keep_their_digits() {
 
 #[test]
 fn settings_name_columns_whose_names_do_not_tell() {
-    let robot = Robot::lwa4p();
+    let robot = arm();
     let header = header("clock", ["a{}x", "b{}x", "c{}x"], 3, ",");
     let text = Dialect { header: &header, ..PLAIN }.text();
     let none = ColumnSettings::default();
@@ -228,7 +239,7 @@ fn turns_within_a_file_are_taken_out_and_named() {
 
 #[test]
 fn joints_and_torques_that_are_missing_are_named_with_the_remedy() {
-    let robot = Robot::lwa4p();
+    let robot = arm();
     let columns = ColumnSettings::default();
     let options = options(Some(&robot), &columns);
     let rows = "\n0,0,0,0,0,0,0\n0.01,0,0,0,0,0,0\n";

@@ -151,7 +151,7 @@ pub(crate) fn furthest_point(worst: &PointWitness, kinds: &[JointKind]) -> Findi
          centre of the set, which reaches {} {unit}.",
         four_decimals(*value),
         four_decimals(*reach),
-        unit = state.kind.unit(kinds[state.joint]),
+        unit = state.kind.unit(kinds[state.joint].recorded_units()),
     );
     Finding::new(Severity::Failure, Code::FurthestOutside, text)
         .at(run)
@@ -172,7 +172,7 @@ pub(crate) fn furthest_value(worst: &Witness, kinds: &[JointKind]) -> Finding {
 
 /// Describes a value outside the reachable set in one line.
 pub(crate) fn place_outside(place: &Witness, kinds: &[JointKind]) -> String {
-    let unit = place.state.kind.unit(kinds[place.state.joint]);
+    let unit = place.state.kind.unit(kinds[place.state.joint].recorded_units());
     format!(
         "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
         place.run,
