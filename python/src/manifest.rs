@@ -17,15 +17,11 @@ pub(crate) fn entry(row: &Entry) -> RunEntry {
         file,
         suite: Some(suite),
         motion,
-        kind: None,
         temperature,
         sha256,
-        simulated: false,
-        noise: None,
-        origin: None,
-        at_rest: false,
         order,
         line: index + 1,
+        ..RunEntry::default()
     }
 }
 

@@ -56,7 +56,6 @@ impl<'a> FreeMisfit<'a> {
         Self { robot, columns, recordings, stride }
     }
 
-    /// Returns the recordings as they are.
     pub(crate) fn stated(&self) -> Change {
         Change::none(Torque::Motor, self.robot.joint_count())
     }

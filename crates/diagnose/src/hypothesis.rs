@@ -92,7 +92,6 @@ impl Hypothesis {
         out
     }
 
-    /// Returns the same hypothesis with another size, for an offset or a lag.
     pub(crate) fn with_size(&self, size: f64) -> Option<Self> {
         match *self {
             Self::Offset(joint, _) => Some(Self::Offset(joint, size)),

@@ -85,7 +85,6 @@ fn carries_over(as_stated: &[Misses], tried: &[Tried]) -> bool {
     part(as_stated).zip(least).is_some_and(|(rest, least)| gains(rest, least))
 }
 
-/// Returns what is tried instead of what was stated.
 fn hypotheses(stated: &Change) -> Vec<Hypothesis> {
     let units = [1e-3, 1e3].map(Hypothesis::TorqueUnit);
     let mut all = [&units[..], &[Hypothesis::OppositeTorques]].concat();

@@ -223,7 +223,6 @@ reachtube_files::kinds!(Error {
     _ => Setting,
 });
 
-/// Rounds a time \[s\] to the microsecond.
 fn microseconds(time: f64) -> f64 {
     (1e6 * time).round() / 1e6
 }

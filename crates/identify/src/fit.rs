@@ -148,7 +148,6 @@ impl TorqueNoise {
     }
 }
 
-/// Returns the robust standard deviation of a joint's residuals \[N m\].
 fn robust_deviation(residuals: &[f64], torque: &[f64]) -> f64 {
     robust_standard_deviation(residuals).max(least_deviation(torque))
 }

@@ -51,7 +51,6 @@ mod fit;
 mod fitted;
 mod friction;
 mod gravity;
-mod held_out;
 mod identification;
 mod inertia;
 mod inputs;

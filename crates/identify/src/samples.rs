@@ -238,7 +238,6 @@ impl Samples {
         self.torque.len()
     }
 
-    /// Returns whether there is no row.
     pub(crate) fn is_empty(&self) -> bool {
         self.torque.is_empty()
     }

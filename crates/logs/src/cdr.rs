@@ -68,7 +68,6 @@ impl<'a> Cdr<'a> {
         Ok(self.take(1, 1)?[0])
     }
 
-    /// Reads a u32.
     pub(crate) fn u32(&mut self) -> Result<u32, String> {
         let bytes = self.take(4, 4)?.try_into().expect("four bytes were taken");
         Ok(match self.order {
@@ -77,7 +76,6 @@ impl<'a> Cdr<'a> {
         })
     }
 
-    /// Reads an i32.
     pub(crate) fn i32(&mut self) -> Result<i32, String> {
         self.u32().map(u32::cast_signed)
     }
@@ -96,7 +94,6 @@ impl<'a> Cdr<'a> {
         std::str::from_utf8(text).map_err(|_| format!("the string at byte {at} is not UTF-8"))
     }
 
-    /// Reads a sequence of strings.
     pub(crate) fn strings(&mut self) -> Result<Vec<&'a str>, String> {
         let count = self.u32()? as usize;
         let left = self.body.len() - self.position;
@@ -109,7 +106,6 @@ impl<'a> Cdr<'a> {
         (0..count).map(|_| self.string()).collect()
     }
 
-    /// Reads a sequence of f64.
     pub(crate) fn doubles(&mut self) -> Result<Doubles<'a>, String> {
         let count = self.u32()? as usize;
         // Writers do not align if no element follows.
@@ -118,7 +114,6 @@ impl<'a> Cdr<'a> {
         Ok(Doubles { bytes, order: self.order })
     }
 
-    /// Checks that the message ends here.
     pub(crate) fn end(self) -> Result<(), String> {
         let left = self.body.len() - self.position;
         if left > MOST_PADDING {
@@ -140,7 +135,6 @@ impl Doubles<'_> {
         self.bytes.len() / 8
     }
 
-    /// Returns value `index`, from 0; `None` beyond the end.
     pub(crate) fn get(self, index: usize) -> Option<f64> {
         let bytes = self.bytes.chunks_exact(8).nth(index)?.try_into().ok()?;
         Some(match self.order {

@@ -141,17 +141,10 @@ fn entry(path: &Path, line: u64, content: &Content) -> RunEntry {
     let inside = file.strip_prefix(path).ok().filter(|file| file.file_name().is_some());
     RunEntry {
         file: inside.unwrap_or(file).display().to_string(),
-        suite: None,
-        motion: None,
         kind: Some("logs".into()),
-        temperature: None,
-        sha256: None,
-        simulated: false,
-        noise: None,
-        origin: None,
-        at_rest: false,
         order: line,
         line,
+        ..RunEntry::default()
     }
 }
 

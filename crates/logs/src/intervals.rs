@@ -167,7 +167,6 @@ impl Intervals {
 }
 
 impl RunInterval {
-    /// Reads a line.
     fn of(row: IntervalRow, line: u64) -> Result<Self, String> {
         let filled = |text: Option<String>| text.filter(|text| !text.is_empty());
         let relative = row.start.is_some();

@@ -135,7 +135,6 @@ impl Log {
         Ok(Self { path, joints, topics, samples, values, markers, notes, losses, time, unused })
     }
 
-    /// Returns the topics of joint states that were read.
     #[must_use]
     pub(crate) fn topics(&self) -> &[String] {
         &self.topics
@@ -219,7 +218,6 @@ impl Log {
     }
 }
 
-/// Checks the options alone.
 fn check_options(options: &LogOptions) -> Result<()> {
     let repeated = |names: &[String]| {
         let mut before = std::collections::BTreeSet::new();
@@ -248,7 +246,6 @@ fn check_options(options: &LogOptions) -> Result<()> {
     Ok(())
 }
 
-/// Reads all files of a log.
 fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
     let found = RefCell::new(vec![]);
     let wanted =

@@ -8,7 +8,6 @@ use crate::sample::{Labels, Sample};
 use crate::seconds::decimal;
 use crate::series::TopicStates;
 
-/// Notes which times were used.
 pub(crate) fn time_note(path: &Path, series: &TopicStates, time: LogTime) -> String {
     let path = path.display();
     match time {
@@ -29,7 +28,6 @@ pub(crate) fn time_note(path: &Path, series: &TopicStates, time: LogTime) -> Str
     }
 }
 
-/// Notes that messages were out of order.
 pub(crate) fn order_note(path: &Path, topic: &str, late: usize) -> String {
     format!(
         "{}: {late} messages of {topic} stand after later ones in the file; all were sorted by the \

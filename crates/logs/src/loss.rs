@@ -44,7 +44,6 @@ impl Loss {
         self.received = Some([first.min(log_time), last.max(log_time)]);
     }
 
-    /// Returns file, place and problem.
     pub(crate) fn place(&self) -> String {
         let at = self.offset.map_or_else(String::new, |offset| format!(": byte {offset}"));
         format!("{}{at}: {}", self.file, self.problem)

@@ -78,7 +78,6 @@ impl From<McapError> for Stop {
 }
 
 impl Scan<'_, '_> {
-    /// Reads a record of the file.
     fn piece(&mut self, piece: Piece) -> Result<()> {
         let Piece { offset, bytes, fault } = piece;
         if let Some((problem, lost)) = fault {

@@ -146,7 +146,6 @@ fn file_name(number: usize, log: &Log) -> String {
     format!("{:04}_{}.csv", number + 1, stem.chars().map(safe).collect::<String>())
 }
 
-/// Returns a run as CSV.
 fn csv_text(log: &Log, cut: &Cut) -> String {
     let columns = std::iter::once("t".into()).chain(column_names(log.joints.len()));
     let mut text = columns.collect::<Vec<String>>().join(",");

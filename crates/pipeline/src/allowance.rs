@@ -14,6 +14,7 @@ use crate::carried_over::{Unseen, unseen};
 use crate::error::Result;
 use crate::findings::not_enclosed;
 use crate::prediction::upper_bound;
+use crate::rounding::rounded_up;
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -87,7 +88,6 @@ impl Widened {
         Ok(Self { answer, allowance, reason, finding })
     }
 
-    /// Returns the allowance in words.
     pub(crate) fn words(&self) -> String {
         let joints = &self.answer.model.drive.robot.joints;
         let of_input = self.allowance.iter().skip(2 * joints.len()).copied().enumerate();
@@ -129,24 +129,13 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
         return (Vec::new(), format!("{leave}; no allowance encloses them"), finding);
     };
     let factor = upper_bound(&factors);
-    let allowance = needed.shape.iter().map(|radius| rounded_up(factor * radius)).collect();
+    let allowance = needed.shape.iter().map(|radius| rounded_up(factor * radius, 3)).collect();
     let largest = factors.iter().copied().fold(0.0, f64::max);
     let reason = format!(
         "{leave}; they need up to {largest:.2} times the error of the input, and {factor:.2} times \
          is the bound at 95 % for one more"
     );
     (allowance, reason, None)
-}
-
-/// Rounds up to three digits.
-fn rounded_up(value: f64) -> f64 {
-    if value <= 0.0 {
-        return 0.0;
-    }
-    let exponent = value.log10().floor() as i32 - 2;
-    let digits = (value / 10f64.powi(exponent)).ceil();
-    // The shortest number with these digits.
-    format!("{digits}e{exponent}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -158,6 +147,7 @@ mod tests {
     use reachtube_robot::Robot;
 
     use super::*;
+    use crate::pendulum::pendulum;
 
     /// Returns windows of some motions of a pendulum, whose torques are off by a part of `errors`.
     fn windows(robot: &Robot, motions: &[(&str, f64)]) -> MemoryRuns {
@@ -193,14 +183,6 @@ mod tests {
         };
         let job = Job::new(robot.clone(), windows(robot, motions), Torque::Compensated);
         job.settings(settings).run(&Silent).unwrap()
-    }
-
-    fn pendulum() -> Robot {
-        let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
-                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
-                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
-                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
-        Robot::from_toml(robot, "pendulum").unwrap()
     }
 
     #[test]
@@ -245,10 +227,5 @@ mod tests {
         assert!(asked(1.0).0.is_empty(), "all rows may leave the sets");
         let wrong = answer(&robot, &all).widened(vec![0.0; 2]).unwrap_err().to_string();
         assert!(wrong.contains("allowance"), "{wrong}");
-    }
-
-    #[test]
-    fn allowances_are_rounded_up_to_three_digits() {
-        assert_eq!([0.0, 1.2301e-3, 1.25, 98.71].map(rounded_up), [0.0, 1.24e-3, 1.25, 98.8]);
     }
 }

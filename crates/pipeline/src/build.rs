@@ -12,14 +12,13 @@ use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_R
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
-use crate::findings::{impossible_links, unless_accepted};
+use crate::findings::{impossible_links, unknown_motors, unless_accepted};
 use crate::first_choices::first_choices;
 use crate::held_out::Split;
 use crate::horizon::{
     HorizonWidths, Longest, candidates, longer_horizons, longest, longest_of_all, ratios,
     try_horizons, try_longer,
 };
-use crate::motors::unknown_motors;
 use crate::remedies::TooWide;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::{Sorted, WARMTH, unknown_warmth};
@@ -347,7 +346,6 @@ fn reason_of_horizon(chosen: &Longest, tried: &[HorizonWidths], largest: f64) ->
     words
 }
 
-/// Returns a ratio in percent.
 pub(crate) fn percent(ratio: f64) -> String {
     if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "of no bounded size".into() }
 }

@@ -27,7 +27,6 @@ impl Chooser<'_> {
         self.made.push(choice);
     }
 
-    /// Reports which motions are held out.
     pub(crate) fn choose_held_out(&mut self, split: &Split) {
         let names = if split.names.is_empty() { "the end".into() } else { split.names.join(", ") };
         self.choose("held-out", names, &split.reason);

@@ -79,7 +79,6 @@ fn most_deciding(answer: &Answer) -> BTreeSet<String> {
 }
 
 impl HeldOut {
-    /// Returns the part of the rows that lies outside the sets.
     #[must_use]
     pub(crate) fn part_outside(&self) -> f64 {
         self.outside as f64 / self.rows.max(1) as f64

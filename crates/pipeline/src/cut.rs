@@ -111,14 +111,7 @@ mod tests {
     use reachtube_recordings::ReadOptions;
 
     use super::*;
-
-    fn hinge() -> Robot {
-        let robot = "schema_version = 1\nname = \"hinge\"\n[[joint]]\nname = \"hinge\"\n\
-                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
-                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
-                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
-        Robot::from_toml(robot, "hinge").unwrap()
-    }
+    use crate::pendulum::pendulum;
 
     #[test]
     fn motions_that_calibrate_choose_no_cut_off() {
@@ -136,7 +129,7 @@ mod tests {
         let cut_off = |calibrate: &[&str], path: &str| {
             let calibrate: Vec<String> = calibrate.iter().map(ToString::to_string).collect();
             let paths = [folder.path().join(path)];
-            let cut = Cut::new(&hinge(), Torque::Motor, 0.25, None, &calibrate, &paths).unwrap();
+            let cut = Cut::new(&pendulum(), Torque::Motor, 0.25, None, &calibrate, &paths).unwrap();
             cut.preparation.cut_off.unwrap()
         };
         let [all, slow] = [cut_off(&[], ""), cut_off(&[], "slow.csv")];
@@ -151,7 +144,7 @@ mod tests {
         let log = "t,q1,qd1,tau1\n0,0,1,0\n0.1,0.1,1,0\n0.2,0.2,1,0\n";
         std::fs::write(folder.path().join("a.csv"), log).unwrap();
         let paths = [folder.path().to_path_buf()];
-        let cut = |horizon| Cut::new(&hinge(), Torque::Compensated, horizon, None, &[], &paths);
+        let cut = |horizon| Cut::new(&pendulum(), Torque::Compensated, horizon, None, &[], &paths);
         let refused = cut(0.001).unwrap_err().to_string();
         assert!(refused.contains("0.001 s is shorter than") && refused.contains("0.1 s"));
         assert_eq!(cut(0.1).unwrap().windows.runs().len(), 2);
@@ -171,7 +164,7 @@ mod tests {
             writeln!(index, "run{order}.csv,A,{order}").unwrap();
         }
         std::fs::write(folder.path().join("runs.csv"), &index).unwrap();
-        let robot = hinge();
+        let robot = pendulum();
         let paths = [folder.path().to_path_buf()];
         let cut = || Cut::new(&robot, Torque::Compensated, 0.25, None, &[], &paths).unwrap();
         let noted = |cut: &Cut| cut.notes.iter().any(|n| n.contains("no suite in runs.csv"));

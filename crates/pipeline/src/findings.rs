@@ -5,6 +5,7 @@ use reachtube_conform::next_motion::LeftOut;
 use reachtube_diagnose::Hypothesis;
 use reachtube_finding::{Finding, Severity};
 use reachtube_identify::Implausible;
+use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
 use crate::choices::Choices;
@@ -42,6 +43,23 @@ pub(crate) fn impossible_links(robot: &Robot) -> Option<Finding> {
     })
 }
 
+/// Returns a warning if torques were measured behind the gears and the robot has joints without
+/// motor inertia.
+pub(crate) fn unknown_motors(robot: &Robot, torque: Torque) -> Option<Finding> {
+    let unknown = robot.joints().iter().filter(|joint| joint.armature == 0.0);
+    let names: Vec<&str> = unknown.map(|joint| joint.name.as_str()).collect();
+    (torque == Torque::Link && !names.is_empty()).then(|| {
+        let text = format!(
+            "the torques were measured behind the gears, where the inertia of the motors has no \
+                effect, and the description has none for {}: the links of a wrist alone have \
+                almost no inertia, so that its sets are wide; give `armature` for these joints, \
+                kg m²",
+            names.join(", ")
+        );
+        warning(Code::MotorsUnknown, &text)
+    })
+}
+
 /// Makes the warning that no allowance of the sets encloses a motion that was left out.
 pub(crate) fn not_enclosed(left_out: &LeftOut) -> Finding {
     let motion = &left_out.motion;
@@ -52,7 +70,6 @@ pub(crate) fn not_enclosed(left_out: &LeftOut) -> Finding {
     Finding { place: Some(motion.clone()), ..warning(reachtube_conform::Code::LeftOut, &text) }
 }
 
-/// Makes a warning of a clause.
 pub(crate) fn warning(code: impl Into<reachtube_finding::Code>, text: &str) -> Finding {
     Finding::new(Severity::Warning, code, sentence(text))
 }

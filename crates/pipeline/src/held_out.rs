@@ -85,7 +85,6 @@ impl Split {
         Ok(Self { kept, held_out, names, reason })
     }
 
-    /// Returns whether each motion that is held out is held out as a whole.
     pub(crate) fn are_motions_whole(&self) -> bool {
         let motions = |recordings: &[Recording]| -> BTreeSet<String> {
             recordings.iter().map(|recording| recording.motion.clone()).collect()

@@ -28,7 +28,6 @@ pub(crate) enum MotionType {
 }
 
 impl MotionType {
-    /// Returns the kind of a recording.
     pub(crate) fn of(run: &Run) -> Self {
         let n = run.joints;
         let path = |joint: usize| -> f64 {

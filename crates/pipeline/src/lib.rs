@@ -22,14 +22,16 @@ mod joint_row;
 mod kinds;
 mod live;
 mod mean_position;
-mod motors;
 mod noise;
+#[cfg(test)]
+mod pendulum;
 mod planned;
 mod plausible;
 mod prediction;
 mod prepared;
 mod remedies;
 mod robot;
+mod rounding;
 mod scenario_job;
 mod sorted;
 mod steps;

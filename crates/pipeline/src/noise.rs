@@ -2,6 +2,8 @@
 
 use reachtube_identify::prepare::{RawLog, noise_left};
 
+use crate::rounding::rounded_up;
+
 /// Standard deviations within which noise is taken to lie.
 const DEVIATIONS: f64 = 5.0;
 
@@ -10,16 +12,5 @@ const DEVIATIONS: f64 = 5.0;
 pub(crate) fn noise(logs: &[&RawLog], cut_off: Option<f64>) -> Vec<f64> {
     let states = logs.first().map_or(0, |log| 2 * log.run.joints);
     let left = noise_left(logs, cut_off).unwrap_or_else(|| vec![0.0; states]);
-    left.into_iter().map(|deviation| rounded(DEVIATIONS * deviation)).collect()
-}
-
-/// Rounds up to two digits.
-fn rounded(value: f64) -> f64 {
-    if value <= 0.0 {
-        return 0.0;
-    }
-    let unit = 10f64.powi(value.log10().floor() as i32 - 1);
-    let digits = (value / unit).ceil();
-    // The shortest number with these digits.
-    format!("{digits}e{}", unit.log10().round() as i32).parse().unwrap_or(value)
+    left.into_iter().map(|deviation| rounded_up(DEVIATIONS * deviation, 2)).collect()
 }

@@ -18,16 +18,9 @@ impl Planned {
         let entry = RunEntry {
             file: path.display().to_string(),
             suite: name,
-            motion: None,
-            kind: None,
-            temperature: None,
-            sha256: None,
-            simulated: false,
-            noise: None,
-            origin: None,
-            at_rest: false,
             order: 1,
             line: 1,
+            ..RunEntry::default()
         };
         Self { path: path.into(), runs: [entry] }
     }

@@ -128,14 +128,9 @@ pub(crate) fn unmeasured(robot: &Robot, logs: &[&RawLog]) -> Option<Finding> {
 mod tests {
     use super::*;
 
-    /// A pendulum about a horizontal axis, and a log of it whose torques are `factor` times what it
-    /// needs.
-    fn pendulum(factor: f64) -> (Robot, RawLog) {
-        let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
-                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
-                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
-                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
-        let robot = Robot::from_toml(robot, "pendulum").unwrap();
+    /// A pendulum, and a log of it whose torques are `factor` times what it needs.
+    fn recorded(factor: f64) -> (Robot, RawLog) {
+        let robot = crate::pendulum::pendulum();
         let times: Vec<f64> = (0..500).map(|k| 0.01 * f64::from(k)).collect();
         let state = |t: &f64| [(2.0 * t).sin(), 2.0 * (2.0 * t).cos()];
         let torque = |t: &f64| {
@@ -160,7 +155,7 @@ mod tests {
     #[test]
     fn torques_of_another_sign_or_size_are_named() {
         let found = |factor: f64| -> Vec<String> {
-            let (robot, raw) = pendulum(factor);
+            let (robot, raw) = recorded(factor);
             let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
             let (found, explained) = contradictions(&robot, Torque::Motor, &[log]);
             assert_eq!(explained, Some(Explained { joints: 1, of: 1 }));
@@ -181,7 +176,7 @@ mod tests {
     #[test]
     fn torques_that_were_not_measured_are_named() {
         let found = |factor: f64| {
-            let (robot, raw) = pendulum(factor);
+            let (robot, raw) = recorded(factor);
             unmeasured(&robot, &[&raw]).map(|finding| finding.text)
         };
         assert_eq!(found(1.0), None);

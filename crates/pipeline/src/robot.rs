@@ -216,7 +216,6 @@ impl Evidence<'_> {
         Ok((Robot::from_description(&description)?, implausible_results))
     }
 
-    /// Prepares the motions for a robot.
     fn prepared(&self, robot: &Robot) -> Result<Nominal> {
         let raw: Vec<RawLog> =
             self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();

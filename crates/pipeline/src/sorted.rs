@@ -232,6 +232,7 @@ fn indexed(raw: &[RawLog], given: &[PathBuf]) -> Result<BTreeMap<PathBuf, RunEnt
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pendulum::pendulum;
 
     #[test]
     fn files_of_one_name_in_two_folders_have_the_motions_and_orders_of_their_own_index() {
@@ -244,11 +245,7 @@ mod tests {
             let index = format!("file,suite,order\nrun.csv,{suite},{order}\n");
             std::fs::write(path.join("runs.csv"), index).unwrap();
         }
-        let robot = "schema_version = 1\nname = \"hinge\"\n[[joint]]\nname = \"hinge\"\n\
-                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
-                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
-                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
-        let robot = Robot::from_toml(robot, "hinge").unwrap();
+        let robot = pendulum();
         let raw = read_logs(&paths, &robot, &PrepareSettings::default()).unwrap();
         let own = raw.iter().map(|log| (log.name.as_str(), log.motion.as_deref(), log.order));
         let own: Vec<_> = own.collect();

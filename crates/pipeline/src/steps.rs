@@ -92,6 +92,7 @@ mod tests {
     use super::*;
     use crate::build::{Built, build};
     use crate::error::Error;
+    use crate::pendulum::pendulum;
 
     /// Stops a job once its journal has this many steps.
     struct StopsAt<'a> {
@@ -129,11 +130,7 @@ mod tests {
             }
             std::fs::write(folder.join(format!("{name}.csv")), text).unwrap();
         }
-        let robot = "schema_version = 1\nname = \"pendulum\"\n[[joint]]\nname = \"hinge\"\n\
-                     placement = { translation = [0.0, 0.0, 1.0] }\naxis = [0.0, 1.0, 0.0]\n\
-                     mass = 1.0\ncom = [0.0, 0.0, -0.3]\n\
-                     inertia = [0.02, 0.0, 0.0, 0.02, 0.0, 0.01]\n";
-        Robot::from_toml(robot, "pendulum").unwrap()
+        pendulum()
     }
 
     #[test]

@@ -14,7 +14,7 @@ const REMEDY: &str =
     "runs.csv needs a header with at least the columns file and suite, then one line per run";
 
 /// An entry of the index: one run, and one line of `runs.csv`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RunEntry {
     /// Path in the folder as written, or the name of a run in memory.
     pub file: String,
@@ -83,9 +83,9 @@ impl IndexRow {
             simulated: self.simulated.unwrap_or(false),
             noise: self.noise,
             origin: filled(self.origin),
-            at_rest: false,
             order,
             line,
+            ..RunEntry::default()
         }
     }
 }

@@ -52,15 +52,9 @@ impl MemoryRuns {
             file: name.into(),
             suite: suite.map(String::from),
             motion: motion.map(String::from),
-            kind: None,
-            temperature: None,
-            sha256: None,
-            simulated: false,
-            noise: None,
-            origin: None,
-            at_rest: false,
             order: latest + 1,
             line: self.entries.len() as u64 + 1,
+            ..RunEntry::default()
         });
         self.runs.push(Run { sha256: String::new(), ..run }.with_digest());
         self.entries.last_mut().expect("an entry was added")

@@ -71,7 +71,6 @@ pub(crate) fn merge(all: &mut Vec<Refusal>, more: Vec<Refusal>) {
     more.into_iter().for_each(|refusal| add(all, refusal, 1));
 }
 
-/// Adds one refusal, which refuses `recordings` (0 or 1) recordings that are not counted yet.
 fn add(all: &mut Vec<Refusal>, more: Refusal, recordings: usize) {
     match all.iter_mut().find(|known| known.widest.is_like(more.widest)) {
         Some(known) => {

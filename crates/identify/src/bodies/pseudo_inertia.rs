@@ -28,7 +28,6 @@ pub fn pseudo_inertia(link: &[f64]) -> Matrix4<f64> {
     rows
 }
 
-/// Returns the ten parameters of a pseudo-inertia.
 #[must_use]
 pub(crate) fn link_parameters(p: &Matrix4<f64>) -> [f64; PER_LINK] {
     let trace = p[(0, 0)] + p[(1, 1)] + p[(2, 2)];

@@ -70,7 +70,6 @@ impl RisingFriction {
         weight * (matrix.trace() + x[lambda]) - (weight + barrier) * (det * x[lambda]).ln()
     }
 
-    /// Adds the derivatives of [`value`](Self::value).
     pub(super) fn add_derivatives(
         &self,
         x: &[f64],

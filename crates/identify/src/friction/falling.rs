@@ -38,7 +38,6 @@ impl FallingFriction {
         Viscous { v1, v2, v3 }.falls_beyond(limit)
     }
 
-    /// Describes it in a sentence.
     pub(crate) fn warning(&self, robot: &Robot) -> String {
         let Self { joint, falls_beyond, limit, residuals: [plain, used], .. } = self;
         let own = robot.joints().iter().find(|own| own.name == *joint);

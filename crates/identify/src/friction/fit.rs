@@ -92,7 +92,6 @@ pub(crate) fn fit(name: &str, samples: &[FrictionSample], limit: f64) -> Option<
     Some(fit_form(name, samples, CoulombForm::determined_by(samples), limit))
 }
 
-/// Fits the coefficients of a form.
 fn fit_form(name: &str, samples: &[FrictionSample], form: CoulombForm, limit: f64) -> FrictionFit {
     let (mut solution, weights) = robust_solution(form, samples);
     let falling = rise(name, (form, samples, &weights), limit, &mut solution.x);

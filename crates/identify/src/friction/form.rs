@@ -68,12 +68,10 @@ impl CoulombForm {
         self.coulomb_columns() + OTHER_COLUMNS
     }
 
-    /// Returns the indices of v1, v2 and v3.
     pub(super) fn viscous(self) -> [usize; 3] {
         [4, 3, 2].map(|before| self.columns() - before)
     }
 
-    /// Returns the index of the joint's inertia.
     pub(super) fn inertia(self) -> usize {
         self.columns() - 1
     }

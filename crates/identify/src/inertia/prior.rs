@@ -53,7 +53,6 @@ impl LinkPrior {
         [self.mass, self.second].into_iter().zip(before).any(changed)
     }
 
-    /// Returns the pseudo-inertia of each link.
     pub(super) fn inertias(&self) -> Vec<Matrix4<f64>> {
         let ball =
             Matrix4::from_diagonal(&Vector4::new(self.second, self.second, self.second, self.mass));

@@ -3,7 +3,6 @@
 //! Friction of strain-wave gears often rises steeply at low speeds and levels off. A cubic that
 //! bends so falls at higher speeds, and the nearest cubic that rises is nearly a line.
 
-use crate::held_out::gains;
 use crate::inertia::fit::InertiaFit;
 use crate::inputs::Inputs;
 use crate::regression::residuals::robust_standard_deviation;
@@ -215,4 +214,30 @@ fn solve(gram: &DMatrix<f64>, columns: &[usize]) -> Option<DVector<f64>> {
 fn squares(gram: &DMatrix<f64>, x: &DVector<f64>) -> f64 {
     let z = x.clone().push(-1.0);
     (z.transpose() * gram * &z)[(0, 0)].max(0.0)
+}
+
+/// Returns whether a law predicts held-out parts better, given the sums of squared residuals of
+/// each part without and with it: by more than two standard errors of the mean gain.
+///
+/// The rule favours the simpler law, since the best of several laws looks better than it is.
+fn gains(without: &[f64], with: &[f64]) -> bool {
+    let gains: Vec<f64> = without.iter().zip(with).map(|(a, b)| a - b).collect();
+    let count = gains.len() as f64;
+    let mean = gains.iter().sum::<f64>() / count;
+    let variance = gains.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    count >= 3.0 && mean > 0.0 && mean > 2.0 * (variance / count).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::gains;
+
+    #[test]
+    fn a_gain_counts_only_beyond_two_standard_errors() {
+        assert!(gains(&[1.0, 1.1, 0.9, 1.0], &[0.8, 0.9, 0.8, 0.7]));
+        // One part alone gains, and the others lose a little.
+        assert!(!gains(&[1.0, 1.0, 1.0, 4.0], &[1.1, 1.1, 1.1, 2.0]));
+        assert!(!gains(&[1.0, 1.0, 1.0], &[1.0, 1.0, 1.0]));
+        assert!(!gains(&[1.0, 1.0], &[0.1, 0.1]));
+    }
 }

@@ -178,7 +178,6 @@ pub(super) fn wrong_unit(
     Implausible { text, columns: Some(unit) }
 }
 
-/// Returns the acceleration of gravity \[m/s²\].
 fn gravity(robot: &Robot) -> f64 {
     robot.gravity_acceleration().into_iter().map(|g| g * g).sum::<f64>().sqrt()
 }

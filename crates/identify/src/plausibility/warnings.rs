@@ -107,7 +107,6 @@ impl Checked<'_> {
         &self.robot.joints()[joint].name
     }
 
-    /// Returns the joints whose torque the fit explains poorly.
     fn poorly_fitted(&self) -> impl Iterator<Item = usize> {
         let joints = &self.fit.joints;
         (0..joints.len()).filter(|j| joints[*j].relative() > MAX_UNEXPLAINED)

@@ -45,7 +45,6 @@ impl LogEntry {
         }
     }
 
-    /// Returns whether `tau` is the input u.
     pub(crate) fn is_compensated(&self) -> bool {
         matches!(self, Self::Stretch { compensated: true, .. })
     }

@@ -28,7 +28,6 @@ pub struct PreparedLog {
 }
 
 impl PreparedLog {
-    /// Returns a log whose samples are zero.
     #[must_use]
     pub(crate) fn zeros(name: &str, joints: usize, samples: usize, step: f64) -> Self {
         let zeros = vec![0.0; joints * samples];

@@ -1,6 +1,7 @@
 //! The noise of the sensors, as it is left in prepared recordings.
 
 use crate::prepare::raw_log::RawLog;
+use reachtube_diagnose::median;
 use reachtube_recordings::noise_deviations;
 use std::f64::consts::PI;
 
@@ -15,12 +16,7 @@ use std::f64::consts::PI;
 pub fn noise_left(logs: &[&RawLog], cut_off: Option<f64>) -> Option<Vec<f64>> {
     let all: Vec<Vec<f64>> = logs.iter().filter_map(|log| of_log(log, cut_off)).collect();
     let states = all.first()?.len();
-    let median = |i: usize| {
-        let mut values: Vec<f64> = all.iter().map(|noise| noise[i]).collect();
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
-    Some((0..states).map(median).collect())
+    (0..states).map(|i| median(all.iter().map(|noise| noise[i]))).collect()
 }
 
 fn of_log(log: &RawLog, cut_off: Option<f64>) -> Option<Vec<f64>> {

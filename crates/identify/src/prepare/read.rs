@@ -176,7 +176,6 @@ impl Source {
     }
 }
 
-/// Checks limits and times of a recording.
 fn check(file: &Path, run: &Run, robot: &Robot) -> Result<()> {
     match check_limits(file, run, &axes(robot)) {
         defects if defects.is_empty() => Ok(()),
@@ -205,7 +204,6 @@ fn check_names(robot: &Robot, names: &[String]) -> Result<()> {
     }
 }
 
-/// Removes the samples before `from` \[s\].
 fn starting_at(mut run: Run, from: f64) -> Run {
     let (first, n) = (run.times.partition_point(|t| *t < from), run.joints);
     run.times.drain(..first);

@@ -48,7 +48,6 @@ impl PrepareSettings {
         gain_of_each_joint(&self.gains, joints)
     }
 
-    /// Returns the limit of the times between samples.
     pub(crate) fn gap_limit(&self) -> GapLimit {
         self.max_gap.into()
     }

@@ -37,7 +37,6 @@ pub(crate) struct Survey {
 }
 
 impl Survey {
-    /// Surveys a recording.
     pub(crate) fn of(log: &RawLog) -> Self {
         let run = &log.run;
         let ends = run.times.first().zip(run.times.last()).map(|(first, last)| [*first, *last]);
@@ -82,7 +81,6 @@ pub(crate) fn check_held_out(validate: &[Survey], fitted: &[&Survey]) -> Result<
     Ok(())
 }
 
-/// Returns the range of a joint's position \[rad\].
 fn range(run: &Run, joint: usize) -> f64 {
     let positions = (0..run.len()).map(|k| run.q(k)[joint]);
     positions.clone().fold(f64::MIN, f64::max) - positions.fold(f64::MAX, f64::min)

@@ -76,12 +76,10 @@ fn of_joint(joint: &JointDescription, extents: &[Extent]) -> Vec<(usize, f64)> {
     extents.iter().enumerate().filter_map(lacking).collect()
 }
 
-/// Returns whether positions are within the limits of their joint.
 fn fits(joint: &JointDescription, [_, low, high]: &Extent) -> bool {
     joint.position_limits.is_none_or(|[a, b]| a - BEYOND <= *low && *high <= b + BEYOND)
 }
 
-/// Adds turns to the positions of each joint.
 pub(crate) fn add_turns(run: &mut Run, turns: &[f64]) {
     let n = run.joints;
     for (joint, turns) in turns.iter().enumerate().filter(|(_, turns)| **turns != 0.0) {

@@ -65,7 +65,6 @@ impl Kernel for Reflections<'_> {
     }
 }
 
-/// Returns the scalar product of two vectors of one length.
 #[inline(always)]
 fn dot(x: &[f64], y: &[f64]) -> f64 {
     let (mut sums, mut rest) = ([0.0; SUMS], 0.0);

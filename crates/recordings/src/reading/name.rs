@@ -58,7 +58,6 @@ const FILLERS: [&str; 17] = [
 ];
 
 impl ColumnName {
-    /// Takes a name apart.
     pub(super) fn new(name: &str) -> Self {
         let words = words(name);
         let quantities: Vec<Quantity> = quantities(&words);

@@ -203,7 +203,6 @@ impl Reader<'_> {
         self.table.values.reserve(samples * self.columns.len());
     }
 
-    /// Reads the rows of any other text.
     fn quoted_rows(&mut self, bytes: &[u8]) {
         let read = self.dialect.rows(bytes, |line, fields| {
             let goes_on = !self.has_too_many_defects();

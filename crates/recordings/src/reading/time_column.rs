@@ -49,7 +49,6 @@ const USUAL: [&str; 18] = [
     "nsec",
 ];
 
-/// Returns the time of each file.
 pub(super) fn time_columns(
     files: &[PathBuf],
     dialects: &[Dialect],

@@ -38,7 +38,6 @@ impl TimeUnit {
         }
     }
 
-    /// Returns the name in settings and messages.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Seconds => "s",
@@ -79,7 +78,6 @@ impl AngleUnit {
         }
     }
 
-    /// Returns the name in settings and messages.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Radians => "rad",

@@ -82,15 +82,9 @@ fn entries_of(name: &str, fold: &SuiteFold) -> impl Iterator<Item = (usize, RunE
             file: file.clone(),
             suite: Some(name.into()),
             motion: fold.motion.as_ref().map(|(_, motion)| motion.clone()),
-            kind: None,
-            temperature: None,
-            sha256: None,
-            simulated: false,
-            noise: None,
-            origin: None,
-            at_rest: false,
             order: *order,
             line: u64::from(*place) + 1,
+            ..RunEntry::default()
         };
         (*place as usize, entry)
     })
