@@ -18,34 +18,14 @@ const OPPOSITE: f64 = 0.5;
 /// Samples of a recording that are looked at, at most.
 const SAMPLES: usize = 2000;
 
-/// The joints whose torque a description explains, up to sign and size, and all joints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Explained {
-    joints: usize,
-    of: usize,
-}
-
-impl Explained {
-    /// Returns a finding if the torques of most joints do not follow the description.
-    pub(crate) fn finding(self) -> Option<Finding> {
-        let Self { joints, of } = self;
-        let text = format!(
-            "the description explains the torque of {joints} of {of} joints only: it may be of \
-             another robot, or its joints may be in another order"
-        );
-        let numbers = [("joints".to_string(), joints as f64)].into();
-        (2 * joints < of).then(|| Finding { numbers, ..contradiction(&text) })
-    }
-}
-
-/// Returns what contradicts the robot's description in the torques of filtered recordings, and how
-/// many joints' torques it explains. The torques must still contain gravity. A description that is
-/// no body, or whose links have no mass, has no torques to compare with.
+/// Returns what contradicts the robot's description in the torques of filtered recordings, and a
+/// finding if most joints' torques do not follow it. The torques must still contain gravity. A
+/// description that is no body, or whose links have no mass, has no torques to compare with.
 pub(crate) fn contradictions(
     robot: &Robot,
     kind: Torque,
     logs: &[PreparedLog],
-) -> (Vec<Finding>, Option<Explained>) {
+) -> (Vec<Finding>, Option<Finding>) {
     let n = robot.joint_count();
     let is_bare = robot.inertial_parameters().iter().all(|parameter| *parameter == 0.0);
     if is_bare || robot.check_physical().is_err() || logs.is_empty() {
@@ -74,7 +54,7 @@ pub(crate) fn contradictions(
     if !(1.0 / FACTOR..=FACTOR).contains(&factor) {
         found.push(wrong_size(factor));
     }
-    let explained = Explained { joints: explained().count(), of: n };
+    let few = few_explained(explained().count(), n);
     let opposite = (0..n).filter(|joint| follows[*joint][0] < -OPPOSITE);
     let names: Vec<&str> = opposite.map(|joint| robot.joints()[joint].name.as_str()).collect();
     let names = names.join(", ");
@@ -84,7 +64,17 @@ pub(crate) fn contradictions(
         );
         found.push(Finding { place: Some(names), ..contradiction(&text) });
     }
-    (found, Some(explained))
+    (found, few)
+}
+
+/// Returns a finding if a description explains the torque of few joints of all.
+fn few_explained(joints: usize, of: usize) -> Option<Finding> {
+    let text = format!(
+        "the description explains the torque of {joints} of {of} joints only: it may be of another \
+         robot, or its joints may be in another order"
+    );
+    let numbers = [("joints".to_string(), joints as f64)].into();
+    (2 * joints < of).then(|| Finding { numbers, ..contradiction(&text) })
 }
 
 /// Makes the finding that torques are `factor` times what a description needs.
@@ -157,8 +147,8 @@ mod tests {
         let found = |factor: f64| -> Vec<String> {
             let (robot, raw) = recorded(factor);
             let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
-            let (found, explained) = contradictions(&robot, Torque::Motor, &[log]);
-            assert_eq!(explained, Some(Explained { joints: 1, of: 1 }));
+            let (found, few) = contradictions(&robot, Torque::Motor, &[log]);
+            assert_eq!(few, None);
             found.iter().map(ToString::to_string).collect()
         };
         assert_eq!(found(1.0), Vec::<String>::new());
@@ -168,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_description_that_explains_few_joints_is_named() {
-        let text = |joints: usize| Explained { joints, of: 6 }.finding().map(|found| found.text);
+        let text = |joints: usize| few_explained(joints, 6).map(|found| found.text);
         assert_eq!(text(3), None);
         assert!(text(1).is_some_and(|text| text.contains("1 of 6 joints only")));
     }

@@ -15,7 +15,7 @@ use reachtube_robot::Robot;
 use crate::error::Result;
 use crate::findings::{contradiction, implausible};
 use crate::held_out::Recording;
-use crate::plausible::{Explained, contradictions, unmeasured};
+use crate::plausible::{contradictions, unmeasured};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -70,13 +70,13 @@ impl Evidence<'_> {
     ///
     /// As [`identify`], if the description is no alternative.
     pub(crate) fn choose(&self, described: &Robot, given: Option<bool>) -> Result<Nominal> {
-        let (mut contradictions, explained) = self.contradictions(described)?;
+        let (mut contradictions, few_explained) = self.contradictions(described)?;
         let chosen = self.chosen(described, given);
         let mut chosen = chosen.map_err(|error| error.because(&contradictions))?;
         // An identification blames columns if the description is of another robot.
         let is_wrong = chosen.findings.iter().any(|other| other.severity == Severity::Failure);
         if is_wrong && contradictions.is_empty() {
-            contradictions.extend(explained.and_then(Explained::finding));
+            contradictions.extend(few_explained);
         }
         // An identification tells exchanged columns, and the description a sign and a scale.
         if !chosen.is_swapped && !contradictions.is_empty() {
@@ -152,9 +152,9 @@ impl Evidence<'_> {
         Ok(Nominal { reason, findings, is_swapped, ..best })
     }
 
-    /// Returns what contradicts the description in the recorded torques, and how many joints'
-    /// torques it explains.
-    fn contradictions(&self, described: &Robot) -> Result<(Vec<Finding>, Option<Explained>)> {
+    /// Returns what contradicts the description in the recorded torques, and a finding if most
+    /// joints' torques do not follow it.
+    fn contradictions(&self, described: &Robot) -> Result<(Vec<Finding>, Option<Finding>)> {
         let logs: Vec<&RawLog> = self.motions.iter().map(|motion| &*motion.log).collect();
         if let Some(finding) = unmeasured(described, &logs) {
             return Ok((vec![finding], None));
