@@ -56,8 +56,7 @@ impl Columns {
 
 impl Hypothesis {
     /// Returns how recordings of a robot are read under the hypothesis.
-    #[must_use]
-    pub fn change(&self, robot: &Robot, stated: &Change) -> Change {
+    pub(crate) fn change(&self, robot: &Robot, stated: &Change) -> Change {
         let mut out = stated.clone();
         match *self {
             Self::TorqueUnit(factor) => out.torque_factors.fill(factor),
@@ -115,14 +114,16 @@ impl Hypothesis {
         format!("{subject} {verb} {rest}")
     }
 
-    /// Returns the hypothesis as a clause that leaves room for doubt.
+    /// Returns the hypothesis as a clause that leaves room for doubt, and the remedy.
     #[must_use]
-    pub fn probable_clause(&self, robot: &Robot) -> String {
+    pub fn probably(&self, robot: &Robot) -> [String; 2] {
         let [subject, verb, rest] = self.words(robot);
-        match verb.as_str() {
+        let clause = match verb.as_str() {
             "is" | "are" => format!("{subject} {verb} probably {rest}"),
             _ => format!("{subject} probably {verb} {rest}"),
-        }
+        };
+        let [_, remedy] = self.remedy();
+        [clause, remedy]
     }
 
     fn words(&self, robot: &Robot) -> [String; 3] {
@@ -171,8 +172,7 @@ impl Hypothesis {
     }
 
     /// Returns what corrects the recordings, and the remedy; both empty if the clause says so.
-    #[must_use]
-    pub fn remedy(&self) -> [String; 2] {
+    fn remedy(&self) -> [String; 2] {
         match *self {
             Self::TorqueUnit(factor) => {
                 ["the factor".into(), format!("multiply the torques by {factor}")]
@@ -212,7 +212,7 @@ impl Hypothesis {
     /// Under the hypothesis, the sum of squared residuals of `joint` drops to `share` of its value.
     #[must_use]
     pub fn warning(&self, robot: &Robot, (joint, share): (usize, f64)) -> String {
-        let (what, [correction, remedy]) = (self.probable_clause(robot), self.remedy());
+        let ([what, remedy], [correction, _]) = (self.probably(robot), self.remedy());
         let of_joint = &robot.joints()[joint].name;
         format!(
             "{what}: {correction} reduces the sum of squared residuals of {of_joint} to \

@@ -200,8 +200,8 @@ fn size(value: f64) -> String {
     if value < 1e6 { format!("{value:.3}") } else { format!("{value:.1e}") }
 }
 
-/// Returns a defect for each joint whose positions are far beyond its limits, and one for each whose
-/// velocities are; `furthest` has the largest |q| and |q̇| of each joint.
+/// Returns a defect for each joint whose positions are far beyond its limits, and one for each
+/// whose velocities are; `furthest` has the largest |q| and |q̇| of each joint.
 fn beyond_limits(path: &Path, furthest: &[f64], axes: &[Axis]) -> Vec<Defect> {
     let (positions, velocities) = furthest.split_at(furthest.len() / 2);
     let far = |furthest: f64, limit: f64| furthest > LIMIT_FACTOR * limit;

@@ -162,7 +162,7 @@ impl<'a> OffsetSearch<'a> {
         let joint = &self.robot.joints()[at.joint];
         let (name, unit) = (&joint.name, joint.kind.position_unit());
         let Estimate { offset, error } = estimate;
-        let [_, remedy] = Hypothesis::Offset(at.joint, offset).remedy();
+        let [_, remedy] = Hypothesis::Offset(at.joint, offset).probably(self.robot);
         let (place, remedy) = match at.log {
             None => (String::new(), remedy),
             Some(log) => (

@@ -172,7 +172,7 @@ pub(super) fn wrong_unit(
     compensated: bool,
 ) -> Implausible {
     let unit = Hypothesis::TorqueUnit(if side == Ordering::Greater { 1e-3 } else { 1e3 });
-    let (probably, [_, remedy]) = (unit.probable_clause(robot), unit.remedy());
+    let [probably, remedy] = unit.probably(robot);
     let gains = if compensated { "" } else { ", for example with --gains or prepare.gains" };
     let text = format!("{clause}: {probably}; {remedy}{gains}");
     Implausible { text, columns: Some(unit) }
