@@ -23,6 +23,6 @@ pub use axes::{axes, input};
 pub use change::Change;
 pub use free_misfit::{FreeMisfit, Signals};
 pub use hypothesis::{Columns, Hypothesis};
-pub use likeliest::{LikeliestFault, likeliest_fault};
-pub use reading::{Reading, gains};
+pub use likeliest::likeliest_fault;
+pub use reading::gains;
 pub use robot_misfit::RobotMisfit;

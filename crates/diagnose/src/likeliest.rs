@@ -19,16 +19,16 @@ const LAGS: [f64; 8] = [0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.2, -0.2];
 const REFINEMENTS: usize = 7;
 
 /// A fault of the columns, and what remains of the squared residuals without it.
-pub struct LikeliestFault {
-    /// The fault.
-    pub fault: Hypothesis,
+struct Tried {
+    fault: Hypothesis,
     /// Logarithm of the product of the joints' shares.
     score: f64,
     /// The joint whose squared residuals drop most, and the share that remains of them.
-    pub clearest: (usize, f64),
+    clearest: (usize, f64),
 }
 
-/// Searches for the one fault of the columns that explains the torque best.
+/// Searches for the one fault of the columns that explains the torque best. Returns it with the
+/// joint whose squared residuals drop most, and the share that remains of them.
 ///
 /// The likelihood decides, with an unknown standard deviation of each joint: a fault counts as much
 /// on a joint with little torque as on one with much. The result is `None` if no fault explains
@@ -36,7 +36,10 @@ pub struct LikeliestFault {
 /// a false reading may explain a short motion better than the right one, because the open
 /// parameters adapt to it. Only degrees and signs of torques are then looked for.
 #[must_use]
-pub fn likeliest_fault(misfit: &FreeMisfit, is_determined: bool) -> Option<LikeliestFault> {
+pub fn likeliest_fault(
+    misfit: &FreeMisfit,
+    is_determined: bool,
+) -> Option<(Hypothesis, (usize, f64))> {
     let stated = misfit.stated();
     let here = misfit.sizes(&stated)?;
     let without = |fault: Hypothesis| {
@@ -44,9 +47,9 @@ pub fn likeliest_fault(misfit: &FreeMisfit, is_determined: bool) -> Option<Likel
         let shares = sizes.iter().zip(&here).map(|(size, here)| (size / here).powi(2));
         let score = shares.clone().map(f64::ln).sum();
         let clearest = shares.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(LikeliestFault { fault, score, clearest })
+        Some(Tried { fault, score, clearest })
     };
-    let better = |a: &LikeliestFault, b: &LikeliestFault| a.score.total_cmp(&b.score);
+    let better = |a: &Tried, b: &Tried| a.score.total_cmp(&b.score);
     let mut faults = faults(misfit.robot.joint_count());
     faults.retain(|fault| {
         is_determined || matches!(fault, Hypothesis::Degrees | Hypothesis::Sign(_, Columns::Torque))
@@ -61,7 +64,7 @@ pub fn likeliest_fault(misfit: &FreeMisfit, is_determined: bool) -> Option<Likel
         best = faults.filter_map(without).chain([best]).min_by(better)?;
         step *= 0.5;
     }
-    (best.score < REMAINING.ln()).then_some(best)
+    (best.score < REMAINING.ln()).then_some((best.fault, best.clearest))
 }
 
 fn faults(joints: usize) -> Vec<Hypothesis> {

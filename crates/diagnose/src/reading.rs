@@ -13,21 +13,12 @@ const LARGEST_REST: f64 = 0.5;
 /// Lags that are tried, s.
 const LAGS: [f64; 8] = [0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2];
 
-/// The reading of recordings under which a robot explains them much better than as stated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
-    /// The hypothesis.
-    pub hypothesis: Hypothesis,
-    /// The part of the input that is not explained under it.
-    pub unexplained: f64,
-}
-
 impl RobotMisfit<'_> {
     /// Returns the part of the input that is not explained as stated, and the hypothesis that
-    /// explains most, if it gains much, also in runs that are left out. `None` if the recordings
-    /// are too short.
+    /// explains most with the part that is not explained under it, if it gains much, also in runs
+    /// that are left out. `None` if the recordings are too short.
     #[must_use]
-    pub fn reading(&self, stated: &Change) -> Option<(f64, Option<Reading>)> {
+    pub fn reading(&self, stated: &Change) -> Option<(f64, Option<(Hypothesis, f64)>)> {
         let as_stated = self.misses(stated);
         let rest = part(&as_stated)?;
         let tried: Vec<Tried> = hypotheses(stated)
@@ -39,11 +30,7 @@ impl RobotMisfit<'_> {
             .collect();
         let likely = best(&tried, |_| true).filter(|(least, _)| gains(rest, *least));
         let likely = likely.filter(|_| carries_over(&as_stated, &tried));
-        let reading = likely.map(|(unexplained, Tried { hypothesis, .. })| Reading {
-            hypothesis: *hypothesis,
-            unexplained,
-        });
-        Some((rest, reading))
+        Some((rest, likely.map(|(unexplained, tried)| (tried.hypothesis, unexplained))))
     }
 }
 

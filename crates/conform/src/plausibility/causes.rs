@@ -1,5 +1,5 @@
 use reachtube_abstraction::ModelKind;
-use reachtube_diagnose::{Change, Hypothesis, Reading, RobotMisfit, gains};
+use reachtube_diagnose::{Change, Hypothesis, RobotMisfit, gains};
 use reachtube_recordings::Run;
 use reachtube_robot::JointDescription;
 
@@ -42,7 +42,7 @@ pub(super) fn likely_cause(
     let stated = Change::none(problem.settings().torque, problem.joints());
     let scaled = calibration.filter(|found| found.factor >= LARGE_FACTOR).map(scaled_by);
     let Some((rest, reading)) = misfit.reading(&stated) else { return Ok(scaled) };
-    if let Some(Reading { hypothesis, unexplained }) = reading {
+    if let Some((hypothesis, unexplained)) = reading {
         let clause = hypothesis.clause(problem.robot());
         let kind = match hypothesis {
             Hypothesis::Kind(kind) => Some(kind),

@@ -7,7 +7,7 @@ use crate::plausibility::offset::independent_columns;
 use crate::plausibility::scale::torque_unit_warning;
 use crate::prepare::log::{PreparedLog, spread};
 use crate::samples::{KnownTorque, Samples, Sampling};
-use reachtube_diagnose::{FreeMisfit, Hypothesis, LikeliestFault, Signals, likeliest_fault};
+use reachtube_diagnose::{FreeMisfit, Hypothesis, Signals, likeliest_fault};
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
@@ -55,7 +55,7 @@ impl Checked<'_> {
         let gains: Vec<String> = gains.iter().filter_map(wrong_gain).collect();
         let found = self.likeliest_fault();
         // Degrees make all masses meaningless.
-        let are_degrees = found.as_ref().is_some_and(|found| found.fault == Hypothesis::Degrees);
+        let are_degrees = found.is_some_and(|(fault, _)| fault == Hypothesis::Degrees);
         let torque_unit = if are_degrees {
             None
         } else if self.compensated {
@@ -69,7 +69,7 @@ impl Checked<'_> {
             let is_one = gains.is_empty() || self.gains_agree(&logs);
             is_one.then(|| Implausible::new(warning))
         };
-        let fault = found.map(|LikeliestFault { fault, clearest, .. }| {
+        let fault = found.map(|(fault, clearest)| {
             // Zeros and clocks of robots are off a little.
             let is_small = matches!(fault, Hypothesis::Offset(..) | Hypothesis::Lag(..));
             let text = fault.warning(self.robot, clearest);
@@ -82,7 +82,7 @@ impl Checked<'_> {
     }
 
     /// Returns the fault of the columns that explains the torque best, if one does.
-    fn likeliest_fault(&self) -> Option<LikeliestFault> {
+    fn likeliest_fault(&self) -> Option<(Hypothesis, (usize, f64))> {
         let Sampling { slow, margin, .. } = self.sampling;
         let signals = spread(self.logs, MOST_LOGS).into_iter().map(|log| Signals {
             step: log.step,
