@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pyo3::prelude::*;
 use reachtube::identify::IdentifySettings;
 use reachtube::identify::prepare::LogEntry;
-use reachtube::page::write_identified_html;
+use reachtube::page::identified_html;
 use reachtube::{Robot, Run};
 use serde_json::{Map, Value};
 
@@ -101,9 +101,7 @@ pub(crate) fn identify(
         let found = reachtube::identify::identify(&robot, &settings, &folder, &step)
             .map_err(|error| Failure::from(error).of_runs_in(files.path()))?;
         let summary = serde_json::to_string(&found.summary()).map_err(Failure::setting)?;
-        let mut page = Vec::new();
-        write_identified_html(&found, &mut page)
-            .map_err(|error| Failure::Other(error.to_string()))?;
-        Ok((summary, found.robot_toml(), String::from_utf8_lossy(&page).into_owned()))
+        let page = identified_html(&found).map_err(|error| Failure::Other(error.to_string()))?;
+        Ok((summary, found.robot_toml(), page))
     })
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use reachtube::conform::{Keep, Model, Opened};
-use reachtube::page::{StopPage, write_stop_html};
+use reachtube::page::{StopPage, stop_html, verify_files};
 use reachtube::pipeline::ScenarioJob;
 use reachtube::recordings::RunSource;
 use reachtube::robot::JointKind;
@@ -56,10 +56,7 @@ pub(crate) fn stop(
         if table {
             let (model, brakes, study) = (&model, &brakes, &study);
             let page = StopPage { robot, model, brakes, study, warnings };
-            let mut html = Vec::new();
-            write_stop_html(&page, &mut html)?;
-            let html = String::from_utf8_lossy(&html).into_owned();
-            files.push((reachtube::page::STOP_PAGE_FILE.to_string(), html));
+            files.push((reachtube::page::STOP_PAGE_FILE.to_string(), stop_html(&page)?));
         }
         let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
         let findings = [&study.findings[..], warnings].concat();
@@ -93,7 +90,9 @@ pub(crate) fn verify(
             }
         };
         let findings = list(&verified.findings());
-        Ok(kept(verified.to_json(), &findings, &verified.report(), &verified.files()))
+        let (text, mut files) = (verified.report().to_string(), verify_files(&verified));
+        files.pop(); // The page.
+        Ok(kept(verified.to_json(), &findings, &text, &files))
     })
 }
 

@@ -1,10 +1,11 @@
 use std::fmt;
 
 use crate::printable::printable;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A table of texts, of which the first column names the row.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Table {
     /// What the table shows; empty if the text around it says so.
     pub title: String,
@@ -13,7 +14,12 @@ pub struct Table {
     /// The rows, each as long as the header.
     pub rows: Vec<Vec<String>>,
     /// Number of rows that are not in the table because there are too many.
+    #[serde(skip_serializing_if = "is_zero")]
     pub more: usize,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 impl Table {
@@ -25,6 +31,13 @@ impl Table {
     ) -> Self {
         let header = header.into_iter().map(Into::into).collect();
         Self { title: String::new(), header, rows, more: 0 }
+    }
+
+    /// Returns the table under a title.
+    #[must_use]
+    pub fn titled(mut self, title: impl Into<String>) -> Self {
+        self.title = title.into();
+        self
     }
 
     /// Keeps the first rows only, and counts the others.

@@ -57,6 +57,7 @@ mod inputs;
 mod plausibility;
 pub mod prepare;
 mod regression;
+mod report;
 mod samples;
 mod settings;
 mod stiction;

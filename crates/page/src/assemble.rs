@@ -211,7 +211,6 @@ fn trust(sources: &Sources) -> Vec<String> {
     }
 }
 
-/// Returns what must not be concluded.
 fn caution(sources: &Sources) -> Vec<String> {
     let codes = [
         Code::RecordedOnly,
@@ -230,7 +229,6 @@ fn of_codes(sources: &Sources, findings: &[Finding], codes: &[Code]) -> Vec<Stri
     codes.iter().copied().flat_map(of).map(|finding| sentence(sources, finding)).collect()
 }
 
-/// Returns a finding as a sentence.
 fn sentence(sources: &Sources, finding: &Finding) -> String {
     as_sentence(&finding.written_for(sources.front_end))
 }

@@ -70,7 +70,6 @@ pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
     Ok(vec![("page", own), ("held-out", other)])
 }
 
-/// Returns a page about some recordings; `which` ends the line under its title.
 fn excerpt(built: &Built, runs: &MemoryRuns, which: &str) -> Result<Page> {
     let job = built.answer.model.check(runs.clone()).keep(Keep::All);
     let opened = job.open(&Silent)?;

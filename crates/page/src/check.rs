@@ -5,7 +5,6 @@ use super::error::Error;
 use super::page::{Bounds, SetsTable};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 
-/// Checks the shapes, the times and the values of a suite.
 pub(super) fn suite(figure: &SuiteFigure) -> Result<(), Error> {
     let place = Place { suite: &figure.suite, states: 2 * figure.joints.len() };
     place.at_least("joints", figure.joints.len(), 1)?;
@@ -22,7 +21,6 @@ pub(super) fn suite(figure: &SuiteFigure) -> Result<(), Error> {
     figure.tight.iter().try_for_each(|spot| place.spot(spot, figure.runs.len()))
 }
 
-/// Checks that the sets can be printed.
 pub(super) fn sets(table: &SetsTable) -> Result<(), Error> {
     for (index, row) in table.joints.iter().enumerate() {
         let noise = row.noise.iter().flatten();

@@ -2,7 +2,7 @@
 //! last or hottest.
 
 use super::suite_figure::RunTrace;
-use plotters::style::RGBColor;
+use super::svg::Colour;
 
 /// Red, green and blue of the scale's colours, all darker than the bands: blue, indigo, violet,
 /// magenta, red.
@@ -14,20 +14,14 @@ pub(super) const ANCHORS: [[f64; 3]; 5] = [
     [222.0, 30.0, 30.0],
 ];
 
-/// Returns the colour at `heat` in 0..=1.
-pub(super) fn colour(heat: f64) -> RGBColor {
+pub(super) fn colour(heat: f64) -> Colour {
     let place = heat.clamp(0.0, 1.0) * (ANCHORS.len() - 1) as f64;
     let below = (place as usize).min(ANCHORS.len() - 2);
     let mix = |channel: usize| {
         let (from, to) = (ANCHORS[below][channel], ANCHORS[below + 1][channel]);
         (from + (to - from) * (place - below as f64)).round() as u8
     };
-    RGBColor(mix(0), mix(1), mix(2))
-}
-
-/// Returns the colour as the figures print it, such as `#1246C8`.
-pub(super) fn hex(colour: RGBColor) -> String {
-    format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2)
+    [mix(0), mix(1), mix(2)]
 }
 
 /// The places of a suite's runs on the scale of colours.
@@ -70,6 +64,7 @@ fn relative(values: &[f64]) -> (Vec<f64>, [f64; 2]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::svg::hex;
     use super::*;
 
     fn run(order: usize, temperature: Option<f64>) -> RunTrace {

@@ -6,13 +6,9 @@ use reachtube_conform::settings::Weights;
 
 use crate::chart::{Chart, Series};
 use crate::suite_figure::{Band, RunTrace, SuiteFigure};
-use crate::text_table::{TextTable, change};
+use crate::svg::{BLUE, GREY};
+use reachtube_finding::Table;
 use reachtube_scalar::number::{at_least, four_decimals};
-
-/// Blue.
-const RUN: [u8; 3] = [18, 70, 200];
-/// Grey.
-const EDGE: [u8; 3] = [140, 149, 159];
 
 /// Number of runs and of motions that are listed.
 const MOST_ROWS: usize = 20;
@@ -27,7 +23,6 @@ pub(super) fn cost_unit(model: &Model) -> String {
     }
 }
 
-/// Returns the unit of sums of widths over samples, in brackets.
 pub(super) fn sum_unit(model: &Model) -> String {
     let kinds = model.drive.robot.kinds();
     let is_shared = kinds.iter().all(|kind| *kind == kinds[0]);
@@ -41,7 +36,7 @@ pub(super) fn sum_unit(model: &Model) -> String {
 }
 
 /// Returns the tables of the shares of the joints, of the runs that decide, and of the motions.
-pub(super) fn cost_tables(model: &Model, figures: &[SuiteFigure]) -> Vec<TextTable> {
+pub(super) fn cost_tables(model: &Model, figures: &[SuiteFigure]) -> Vec<Table> {
     let tables = [by_joint(model, figures), by_run(figures), by_motion(model)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()
 }
@@ -52,15 +47,10 @@ pub(super) fn cost_charts(figures: &[SuiteFigure]) -> Vec<Chart> {
     let runs = || figures.iter().flat_map(|figure| &figure.gauges);
     let over_order = runs().map(|run| (run.order as f64 + 1.0, run.gauge));
     let over_temperature = runs().filter_map(|run| Some((run.temperature?, run.gauge)));
-    let chart = |title: &str, x: &str, points: Vec<(f64, f64)>| Chart {
-        title: format!("Part of the set that each run uses, {title}"),
-        x: x.into(),
-        y: "part of the radius".into(),
-        area: Vec::new(),
-        series: vec![
-            Series { points: edge(&points), dots: false, colour: EDGE },
-            Series { points, dots: true, colour: RUN },
-        ],
+    let chart = |title: &str, x: &str, points: Vec<(f64, f64)>| {
+        let title = format!("Part of the set that each run uses, {title}");
+        let series = vec![Series::line(edge(&points), GREY), Series::dots(points, BLUE)];
+        Chart::new(title, x, "part of the radius", series)
     };
     let charts = [
         chart("by order", "run of its suite", over_order.collect()),
@@ -73,7 +63,6 @@ pub(super) fn cost_charts(figures: &[SuiteFigure]) -> Vec<Chart> {
     charts.into_iter().filter(differs).collect()
 }
 
-/// Returns a line at 1 below some points.
 fn edge(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let ends = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
         [low.min(point.0), high.max(point.0)]
@@ -82,7 +71,7 @@ fn edge(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Returns the share of each state in the weighted widths of the bands over the drawn suites.
-fn by_joint(model: &Model, figures: &[SuiteFigure]) -> TextTable {
+fn by_joint(model: &Model, figures: &[SuiteFigure]) -> Table {
     let n = model.joints();
     let shares: Vec<f64> =
         (0..2 * n).map(|state| weight(model, state) * widths(model, figures, state)).collect();
@@ -92,15 +81,11 @@ fn by_joint(model: &Model, figures: &[SuiteFigure]) -> TextTable {
         let (q, qd) = (shares[joint], shares[n + joint]);
         vec![model.drive.robot.joints[joint].name.clone(), percent(q), percent(qd), percent(q + qd)]
     };
-    TextTable {
-        title: "Share of the cost per joint: weighted width of the set over the drawn suites"
-            .into(),
-        header: ["Joint", "Position", "Velocity", "Both"].map(String::from).to_vec(),
-        rows: if all > 0.0 { (0..n).map(row).collect() } else { Vec::new() },
-    }
+    let rows = if all > 0.0 { (0..n).map(row).collect() } else { Vec::new() };
+    Table::new(["Joint", "Position", "Velocity", "Both"], rows)
+        .titled("Share of the cost per joint: weighted width of the set over the drawn suites")
 }
 
-/// Returns the weight of a state in the cost.
 fn weight(model: &Model, state: usize) -> f64 {
     match &model.settings.weights {
         Weights::Unit => 1.0,
@@ -119,8 +104,7 @@ fn widths(model: &Model, figures: &[SuiteFigure], state: usize) -> f64 {
     figures.iter().map(|figure| width(&figure.band)).sum()
 }
 
-/// Returns the runs that decide the most rows.
-fn by_run(figures: &[SuiteFigure]) -> TextTable {
+fn by_run(figures: &[SuiteFigure]) -> Table {
     let runs = figures.iter().flat_map(|figure| figure.runs.iter().map(move |run| (figure, run)));
     let mut runs: Vec<_> = runs.filter(|(_, run)| run.touches > 0).collect();
     runs.sort_by_key(|(_, run)| std::cmp::Reverse(run.touches));
@@ -135,16 +119,21 @@ fn by_run(figures: &[SuiteFigure]) -> TextTable {
             degrees(run.temperature),
         ]
     };
-    let mut table = TextTable {
-        title: "Runs that decide the most rows".into(),
-        header: ["Run", "Suite", "Rows", "Order", "Temperature"].map(String::from).to_vec(),
-        rows: runs.iter().take(MOST_ROWS).map(row).collect(),
-    };
+    let rows = runs.iter().take(MOST_ROWS).map(row).collect();
+    let mut table = Table::new(["Run", "Suite", "Rows", "Order", "Temperature"], rows)
+        .titled("Runs that decide the most rows");
     if runs.iter().all(|(_, run)| run.temperature.is_none()) {
         table.header.truncate(4);
         table.rows.iter_mut().for_each(|row| row.truncate(4));
     }
     table
+}
+
+/// Returns by how much a value differs from a reference, in percent with its sign.
+pub(super) fn change(value: f64, reference: f64) -> String {
+    // The sum with 0 turns a negative zero into a positive one.
+    let tenths = (1e3 * (value / reference - 1.0)).round() + 0.0;
+    format!("{:+.1} %", tenths / 10.0)
 }
 
 /// Returns the cost of the smallest sets for all motions that the sets were found on, beside which
@@ -160,8 +149,7 @@ fn smallest_cost(model: &Model) -> Option<f64> {
     linearised.or(if is_wider { of_fit } else { model.cost })
 }
 
-/// Returns what the sets cost without each motion, the cheapest first.
-fn by_motion(model: &Model) -> TextTable {
+fn by_motion(model: &Model) -> Table {
     let is_linearised =
         model.search.as_ref().is_some_and(|search| search.linearised_cost.is_some());
     let mut table = without_each(&model.left_out, smallest_cost(model), &cost_unit(model));
@@ -174,7 +162,7 @@ fn by_motion(model: &Model) -> TextTable {
 
 /// Returns the table of the sets without each motion; without a column of changes if `smallest`,
 /// the cost of the smallest sets for all motions, is not known.
-fn without_each(left_out: &[LeftOut], smallest: Option<f64>, unit: &str) -> TextTable {
+fn without_each(left_out: &[LeftOut], smallest: Option<f64>, unit: &str) -> Table {
     let mut motions: Vec<_> = left_out.iter().filter_map(|left| Some((left, left.cost?))).collect();
     motions.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Only linear models have the factors of X0 and of U in turn.
@@ -196,7 +184,7 @@ fn without_each(left_out: &[LeftOut], smallest: Option<f64>, unit: &str) -> Text
         header.extend(["X0 at start", "Then U"].map(String::from));
     }
     let rows = motions.iter().take(MOST_ROWS).map(row).collect();
-    TextTable { header, rows, ..TextTable::default() }
+    Table { header, rows, ..Table::default() }
 }
 
 #[cfg(test)]
@@ -241,5 +229,11 @@ mod tests {
         let unknown = without_each(&left_out, None, "[s]");
         assert_eq!(unknown.header, ["Without", "Cost [s]", "Factor"]);
         assert_eq!(unknown.rows[1], ["M1", "8.000", "1.500"]);
+    }
+
+    #[test]
+    fn a_change_that_rounds_to_zero_is_not_negative() {
+        let changes = [0.99999, 1.0, 1.00001, 0.9994, 1.25].map(|value| change(value, 1.0));
+        assert_eq!(changes, ["+0.0 %", "+0.0 %", "+0.0 %", "-0.1 %", "+25.0 %"]);
     }
 }

@@ -67,14 +67,6 @@ pub enum Error {
         /// The suite.
         suite: String,
     },
-    /// The drawing library failed.
-    #[error("{figure}: the figure could not be drawn: {cause}")]
-    Draw {
-        /// The suite or chart.
-        figure: String,
-        /// The library's message.
-        cause: String,
-    },
     /// The contents of the page could not be computed.
     #[error(transparent)]
     Conform(#[from] reachtube_conform::Error),

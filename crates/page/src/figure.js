@@ -50,7 +50,7 @@ function panels(suite, joint, width) {
     const top = block * Math.floor(place / columns) + above;
     return {
       state: index + second * suite.joints.length,
-      name: suite.joints[index],
+      heading: suite.headings[index],
       isVelocity: second === 1,
       isFirst: column === 0,
       left: column * cell + LEFT,
@@ -92,8 +92,6 @@ function figureLayout(suite, state, width) {
   };
   placed.forEach((panel, place) => {
     const [x, y] = [`x${suffix(place)}`, `y${suffix(place)}`];
-    const unit = suite.units[panel.state];
-    const of = panel.isVelocity ? "velocity" : "position";
     layout[`xaxis${suffix(place)}`] = {
       ...axis,
       domain: [panel.left / width, panel.right / width],
@@ -108,11 +106,11 @@ function figureLayout(suite, state, width) {
       domain: [1 - panel.bottom / height, 1 - panel.top / height],
       anchor: x,
       autorange: true,
-      title: panel.isFirst ? { text: `${of} [${unit}]`, standoff: 4 } : undefined,
+      title: panel.isFirst ? { text: suite.axes[panel.state], standoff: 4 } : undefined,
     };
     if (!panel.isVelocity) {
       layout.annotations.push({
-        text: `<b>${plain(panel.name)}</b>`,
+        text: `<b>${plain(panel.heading)}</b>`,
         xref: "paper", yref: "paper", x: (panel.left + panel.right) / 2 / width,
         y: 1 - (panel.top - 3) / height, xanchor: "center", yanchor: "bottom",
         showarrow: false, font: { size: 12.5 },

@@ -1,15 +1,12 @@
 //! One figure of one suite as SVG, after Fig. 4: positions above velocities, one column per joint.
 
-use super::canvas::{Canvas, DrawResult, svg_document};
 use super::error::Error;
-use super::layout::{BESIDE_PLOT, Layout, Rect, units};
+use super::layout::Layout;
 use super::legend::Legend;
-use super::panel::{self, Content};
-use super::style::{centred, font};
+use super::plot::{Frame, draw};
 use super::suite_figure::{SuiteFigure, View};
-use super::text::clean;
+use super::svg::Svg;
 use super::{check, colour};
-use plotters::prelude::*;
 
 /// Draws a suite as a complete SVG document of at most 1,240 px width.
 ///
@@ -25,32 +22,19 @@ use plotters::prelude::*;
 ///
 /// Fails for shapes that do not match, times that do not increase, numbers that are not finite, and
 /// a view that the suite does not have.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_page::{Band, SuiteFigure, View, suite_svg};
-///
-/// let figure = SuiteFigure {
-///     suite: "swing".into(),
-///     joints: vec!["elbow".into()],
-///     times: vec![0.0, 1.0],
-///     band: Band {
-///         label: "reachable set".into(),
-///         lower: vec![vec![-0.1, 0.8], vec![0.9, 0.7]],
-///         upper: vec![vec![0.1, 1.2], vec![1.1, 1.3]],
-///     },
-///     ..SuiteFigure::default()
-/// };
-/// let svg = suite_svg(&figure, View::Motion)?;
-/// assert!(svg.starts_with("<svg") && svg.contains("elbow"));
-/// # Ok::<(), reachtube_page::Error>(())
-/// ```
 pub fn suite_svg(figure: &SuiteFigure, view: View) -> Result<String, Error> {
     check::suite(figure)?;
     if !figure.views().contains(&view) {
         return Err(Error::View { suite: figure.suite.clone(), view });
     }
+    let deviations;
+    let drawn = match view {
+        View::Motion => figure,
+        View::Deviation => {
+            deviations = figure.deviations();
+            &deviations
+        }
+    };
     let mut heat = colour::heat(&figure.runs);
     let joints = 0..figure.joints.len();
     let own: Option<Vec<Vec<f64>>> =
@@ -58,71 +42,32 @@ pub fn suite_svg(figure: &SuiteFigure, view: View) -> Result<String, Error> {
     if own.is_some() {
         heat.ends = ["coldest of each joint".into(), "hottest".into()];
     }
-    let colours = |values: &Vec<f64>| -> Vec<RGBColor> {
+    let colours = |values: &Vec<f64>| -> Vec<[u8; 3]> {
         values.iter().map(|&heat| colour::colour(heat)).collect()
     };
-    let colours: Vec<Vec<RGBColor>> =
+    let colours: Vec<Vec<[u8; 3]>> =
         own.unwrap_or_else(|| vec![heat.values.clone()]).iter().map(colours).collect();
     // The width decides the rows of the legend, and these the height.
     let layout = Layout::new(figure.joints.len());
     let legend = Legend::new(figure, view, &heat, layout.width());
     let layout = layout.below(legend.rows());
-    let size = [layout.width(), layout.height()];
-    svg_document(size, &description(figure, view), |canvas| {
-        legend.draw(canvas)?;
-        panels(canvas, figure, view, &layout, &colours)
-    })
-    .map_err(|cause| Error::Draw {
-        figure: format!("suite {}", figure.suite),
-        cause: cause.to_string(),
-    })
-}
-
-fn panels(
-    canvas: &Canvas,
-    figure: &SuiteFigure,
-    view: View,
-    layout: &Layout,
-    colours: &[Vec<RGBColor>],
-) -> DrawResult {
+    let mut svg = Svg::default();
+    legend.draw(&mut svg);
     let n = figure.joints.len();
     for state in 0..2 * n {
-        let colours = &colours[state % n % colours.len()];
-        let content = Content::new(figure, view, state).thinned(layout.plot());
-        panel::draw(canvas, layout, state, &content, colours)?;
-        labels(canvas, figure, layout, state)?;
+        // The position above shares time axis and heading with the velocity below it.
+        let mut chart = drawn.chart(state, &colours[state % n % colours.len()]);
+        let superfluous = if state < n { &mut chart.x } else { &mut chart.title };
+        superfluous.clear();
+        if !layout.starts_row(state) {
+            chart.y.clear();
+        }
+        let (plot, has_numbers) = (layout.plot(state), state >= n);
+        let frame =
+            Frame { plot, beside: 52.0, margin: 0.0, tick: 28.0, has_numbers, pen: [0.875, 1.6] };
+        draw(&mut svg, &chart, &frame);
     }
-    Ok(())
-}
-
-/// Writes the joint's name above, the quantity beside the row, and the time below.
-fn labels(canvas: &Canvas, figure: &SuiteFigure, layout: &Layout, state: usize) -> DrawResult {
-    let Rect { x, y, height, .. } = layout.panel(state);
-    let (width, plot) = layout.plot();
-    let n = figure.joints.len();
-    let label = font(11.0, FontStyle::Normal);
-    let middle = units(x + BESIDE_PLOT + width / 2.0);
-    if state < n {
-        let name = centred(font(12.5, FontStyle::Bold));
-        let place = (middle, units(layout.block_top(state) + 10.0));
-        let unit = figure.shared_unit(state).is_none().then(|| figure.state_unit(state));
-        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}, {unit}/s]"));
-        canvas.draw_text(&clean(&format!("{}{unit}", figure.joints[state])), &name, place)?;
-    } else {
-        let place = (middle, units(y + height - 8.0));
-        canvas.draw_text("time [s]", &centred(label.clone()), place)?;
-    }
-    if layout.starts_row(state) {
-        let quantity = if state < n { "position" } else { "velocity" };
-        let unit = figure.shared_unit(state).map_or_else(String::new, |unit| format!(" [{unit}]"));
-        let turned = centred(label.transform(FontTransform::Rotate270));
-        canvas.draw_text(
-            &format!("{quantity}{unit}"),
-            &turned,
-            (units(x - 8.0), units(y + plot / 2.0)),
-        )?;
-    }
-    Ok(())
+    Ok(svg.document([layout.width(), layout.height()], &description(figure, view)))
 }
 
 /// Describes the figure in a sentence, for readers who do not see it.
@@ -139,9 +84,10 @@ fn description(figure: &SuiteFigure, view: View) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::BANDS;
     use crate::sample;
-    use crate::style::BAND;
     use crate::suite_figure::Nominal;
+    use crate::svg::hex;
     use roxmltree::{Document, Node};
 
     fn elements<'a>(svg: &'a Document, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
@@ -178,7 +124,7 @@ mod tests {
         let svg = suite_svg(&figure, View::Motion).unwrap();
         let document = Document::parse(&svg).unwrap();
         for heat in colour::heat(&figure.runs).values {
-            let stroke = colour::hex(colour::colour(heat));
+            let stroke = hex(colour::colour(heat));
             let lines = elements(&document, "polyline")
                 .filter(|line| line.attribute("stroke") == Some(&stroke));
             assert_eq!(lines.count(), 4);
@@ -210,7 +156,7 @@ mod tests {
         figure.band.upper = flat;
         let svg = suite_svg(&figure, View::Motion).unwrap();
         let document = Document::parse(&svg).unwrap();
-        let fill = colour::hex(BAND[0]);
+        let fill = hex(BANDS[0][0]);
         let bands =
             elements(&document, "polygon").filter(|band| band.attribute("fill") == Some(&fill));
         let mut drawn = 0;
@@ -222,7 +168,7 @@ mod tests {
                 .map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap()))
                 .collect();
             let end = points.iter().map(|point| point.0).max_by(f64::total_cmp).unwrap();
-            let width = f64::from(units(Layout::new(1).plot().0));
+            let width = Layout::new(1).plot(0).width;
             assert!((end - points[0].0 - width).abs() < 0.05 * width, "{points:?}");
             assert!(points.iter().all(|point| point.1 == points[0].1 && point.1 > 0.0));
             drawn += 1;

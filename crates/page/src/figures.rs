@@ -6,6 +6,7 @@ use super::figure::suite_svg;
 use super::layout::Layout;
 use super::page::Page;
 use super::suite_figure::{RunTrace, SuiteFigure, View};
+use super::svg::hex;
 use super::text::Text;
 use maud::{Markup, PreEscaped, html};
 use reachtube_scalar::number::{counted, significant};
@@ -157,7 +158,7 @@ fn suite_section(index: usize, suite: &SuiteFigure) -> Result<Markup, Error> {
 
 fn figure(suite: &SuiteFigure, view: View) -> Result<Markup, Error> {
     let svg = suite_svg(suite, view)?;
-    let name = if view == View::Motion { "motion" } else { "deviation" };
+    let name = view.name();
     let width = Layout::new(suite.joints.len()).width();
     let (both, only) = match suite.views().len() {
         2 => (Some(name), None),
@@ -223,7 +224,7 @@ fn runs(suite: &SuiteFigure) -> Markup {
 fn run_label(run: &RunTrace, heat: f64) -> Markup {
     html! {
         span {
-            i style={ "background:" (colour::hex(colour::colour(heat))) } {}
+            i style={ "background:" (hex(colour::colour(heat))) } {}
             (Text(&run.name))
             @if let Some(degrees) = run.temperature {
                 " " small { (format!("{degrees:.1} °C")) }

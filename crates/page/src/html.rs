@@ -1,16 +1,17 @@
 //! The page of a model as HTML: verdict, figures, sets, tight spots, settings, and their meaning.
 
-use super::chart::{Chart, chart_svg, chart_svg_of_size};
+use super::chart::Chart;
 use super::error::Error;
 use super::figures::{self, FIGURES};
 use super::library::Assets;
 use super::page::{Lead, Page, Verdict};
-use super::skeleton::{anchor, document, pair_of_lists, section};
+use super::plot::{chart_svg, chart_svg_of_size};
+use super::skeleton::{anchor, document, fact_table, pair_of_lists, section, table};
 use super::terms::{self, Explained};
 use super::text::Text;
-use super::text_table::TextTable;
 use super::{check, scripts, tables};
 use maud::{Markup, PreEscaped, html};
+use reachtube_finding::Table;
 use std::io::Write;
 
 /// Width and height of the first figure \[px\].
@@ -69,7 +70,7 @@ fn sections(page: &Page) -> Result<Vec<(&'static str, Markup)>, Error> {
     add(!page.cost.is_empty(), "What drives the cost", cost(page)?);
     add(!page.nominal.is_empty(), "Fitted nominal model", text_tables(&page.nominal));
     add(!page.trust.is_empty() || !page.caution.is_empty(), "What may be trusted", meaning(page));
-    add(!page.facts.is_empty(), "Settings and provenance", tables::facts(&page.facts));
+    add(!page.facts.is_empty(), "Settings and provenance", fact_table(&page.facts));
     add(!page.notes.is_empty(), "Notes", notes(page));
     add(suites, "Terms", terms::list());
     Ok(sections)
@@ -111,7 +112,6 @@ pub(crate) fn warning_list(warnings: &[String]) -> Markup {
     html! { ul.warnings { @for warning in warnings { li { (Explained(warning)) } } } }
 }
 
-/// Returns the marks of the whole page.
 fn badges(badges: &[String]) -> Markup {
     html! {
         @if !badges.is_empty() {
@@ -167,10 +167,10 @@ fn sets(page: &Page) -> Markup {
     }
 }
 
-fn text_tables(all: &[TextTable]) -> Markup {
+fn text_tables(all: &[Table]) -> Markup {
     html! {
         div.tables {
-            @for table in all { (tables::texts(table)) }
+            @for text in all { (table("sets", text)) }
         }
     }
 }
@@ -189,7 +189,6 @@ fn cost(page: &Page) -> Result<Markup, Error> {
     })
 }
 
-/// Returns what the reader may and may not conclude.
 fn meaning(page: &Page) -> Markup {
     pair_of_lists([
         ("You may rely on", "yes", &page.trust),

@@ -1,12 +1,7 @@
 //! The drawing of a robot: its links and joint axes at home, from the side and from a corner.
 
-use super::canvas::{Canvas, DrawResult, svg_document};
-use super::error::Error;
-use super::layout::units;
-use super::style::{GRID, centred, font, starting};
-use super::text::clean;
+use super::svg::{Anchor, BLUE, Colour, Place, Svg, WHITE};
 use nalgebra::Vector3;
-use plotters::prelude::*;
 use reachtube_robot::{Joint, JointKind, Robot};
 
 /// Width and height of a view \[px\].
@@ -26,10 +21,9 @@ const SAME: f64 = 1e-3;
 const CHARACTER: f64 = 5.8;
 const LINE: f64 = 13.0;
 
-/// Grey.
-const LINK: RGBColor = RGBColor(160, 168, 178);
-/// Blue.
-const AXIS_COLOUR: RGBColor = RGBColor(18, 70, 200);
+/// Grey, and light grey.
+const LINK: Colour = [160, 168, 178];
+const FLOOR: Colour = [226, 230, 235];
 
 /// The direction to the right and the direction upward of a view.
 type View = [Vector3<f64>; 2];
@@ -45,11 +39,7 @@ struct Axis<'a> {
 }
 
 /// Draws a robot at q = 0 as two complete SVG documents: from the side and from a corner.
-///
-/// # Errors
-///
-/// Fails where the drawing library fails.
-pub(super) fn arm_svgs(robot: &Robot) -> Result<String, Error> {
+pub(super) fn arm_svgs(robot: &Robot) -> String {
     let axes = axes(robot);
     let (turn, tilt) = (-50f64.to_radians(), 22f64.to_radians());
     let corner = [
@@ -58,16 +48,8 @@ pub(super) fn arm_svgs(robot: &Robot) -> Result<String, Error> {
     ];
     let side = [Vector3::x(), Vector3::z()];
     [(side, "From the side (x to the right, z up)"), (corner, "From a corner")]
-        .into_iter()
-        .map(|(view, title)| {
-            svg_document(VIEW, title, |canvas| draw_view(canvas, &axes, view, title)).map_err(
-                |cause| Error::Draw {
-                    figure: format!("robot {}", robot.name()),
-                    cause: cause.to_string(),
-                },
-            )
-        })
-        .collect()
+        .map(|(view, title)| drawn(&axes, view, title).document(VIEW, title))
+        .concat()
 }
 
 /// Returns the axes of all joints at home. They are those about which, or along which, the links
@@ -102,8 +84,7 @@ fn axes(robot: &Robot) -> Vec<Axis<'_>> {
         .collect()
 }
 
-/// Draws one view of the robot on the canvas.
-fn draw_view(canvas: &Canvas, axes: &[Axis], view: View, title: &str) -> DrawResult {
+fn drawn(axes: &[Axis], view: View, title: &str) -> Svg {
     let mut chain = vec![Vector3::zeros()];
     for axis in axes {
         chain.extend([axis.point, axis.origin]);
@@ -118,28 +99,28 @@ fn draw_view(canvas: &Canvas, axes: &[Axis], view: View, title: &str) -> DrawRes
     let all: Vec<_> =
         chain.iter().chain(&ground).copied().chain(axes.iter().flat_map(ends)).collect();
     let scale = Scale::new(&all, view);
-    let at = |point: &Vector3<f64>| scale.pixel(point);
-    let line = |points: Vec<(i32, i32)>, colour: RGBColor, width: f64| {
-        canvas.draw(&PathElement::new(points, colour.stroke_width(units(width) as u32)))
+    let places = |points: &[Vector3<f64>]| -> Vec<Place> {
+        points.iter().map(|point| scale.pixel(point)).collect()
     };
-    line(ground.iter().map(at).collect(), GRID, 1.5)?;
-    line(chain.iter().map(at).collect(), LINK, 9.0)?;
+    let mut svg = Svg::default();
+    svg.line(&places(&ground), FLOOR, 1.5);
+    svg.line(&places(&chain), LINK, 9.0);
     for axis in axes {
-        line(ends(axis).iter().map(at).collect(), AXIS_COLOUR, 3.0)?;
-        canvas.draw(&Circle::new(at(&axis.point), units(3.5), WHITE.filled()))?;
-        canvas.draw(&Circle::new(at(&axis.point), units(3.5), AXIS_COLOUR.stroke_width(15)))?;
+        svg.line(&places(&ends(axis)), BLUE, 3.0);
+        svg.dot(scale.pixel(&axis.point), 3.5, WHITE);
+        svg.ring(scale.pixel(&axis.point), 3.5, BLUE, 1.9);
     }
-    names(canvas, axes, &scale)?;
-    let middle = (units(0.5 * VIEW[0]), units(12.0));
-    canvas.draw_text(title, &centred(font(12.0, FontStyle::Bold)), middle)
+    names(&mut svg, axes, &scale);
+    svg.bold((0.5 * VIEW[0], 12.0), title, &Anchor::Middle, 12.0);
+    svg
 }
 
 /// Writes the names of the joints beside their axes; joints at one place share a line.
-fn names(canvas: &Canvas, axes: &[Axis], scale: &Scale) -> DrawResult {
-    let mut lines: Vec<((i32, i32), Vec<&str>)> = Vec::new();
+fn names(svg: &mut Svg, axes: &[Axis], scale: &Scale) {
+    let mut lines: Vec<(Place, Vec<&str>)> = Vec::new();
     for axis in axes {
         let (x, y) = scale.pixel(&axis.point);
-        let same = lines.iter_mut().find(|((_, other), _)| (other - y).abs() < units(9.0));
+        let same = lines.iter_mut().find(|((_, other), _)| (other - y).abs() < 9.0);
         match same {
             Some((place, names)) => {
                 place.0 = place.0.max(x);
@@ -148,30 +129,28 @@ fn names(canvas: &Canvas, axes: &[Axis], scale: &Scale) -> DrawResult {
             None => lines.push(((x, y), vec![&axis.joint.name])),
         }
     }
-    let style = starting(font(11.0, FontStyle::Normal));
-    let [middle, end] = [units(0.5 * VIEW[1]), units(VIEW[0] - 4.0)];
-    let lowest = lines.iter().map(|((_, y), _)| *y).max().unwrap_or(middle);
-    lines.sort_by_key(|((_, y), _)| *y);
+    let [middle, end] = [0.5 * VIEW[1], VIEW[0] - 4.0];
+    let lowest = lines.iter().map(|((_, y), _)| *y).fold(0.0, f64::max);
+    lines.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
     let mut below = 0;
     for ((x, y), names) in lines {
         let rows = rows(&names);
-        let width = |row: &str| units(CHARACTER * row.chars().count() as f64);
-        let beside = x + units(16.0);
+        let width = |row: &str| CHARACTER * row.chars().count() as f64;
+        let beside = x + 16.0;
         let fits = rows.len() == 1 && rows.iter().all(|row| beside + width(row) <= end);
         for (k, row) in rows.iter().enumerate() {
             // Names that do not fit beside the axis are written above it, or below the robot.
             let line = match (fits, y < middle) {
                 (true, _) => y,
-                (false, true) => y - units(24.0 + LINE * (rows.len() - 1 - k) as f64),
+                (false, true) => y - 24.0 - LINE * (rows.len() - 1 - k) as f64,
                 (false, false) => {
                     below += 1;
-                    lowest + units(8.0 + LINE * f64::from(below))
+                    lowest + 8.0 + LINE * f64::from(below)
                 }
             };
-            canvas.draw_text(&clean(row), &style, (beside.min(end - width(row)), line))?;
+            svg.text((beside.min(end - width(row)), line), row, &Anchor::Start, 11.0);
         }
     }
-    Ok(())
 }
 
 /// Writes names as rows that are no wider than a view.
@@ -192,7 +171,7 @@ fn rows(names: &[&str]) -> Vec<String> {
 /// The map from the base's frame to a view.
 struct Scale {
     view: View,
-    /// Drawing units per metre.
+    /// Pixels per metre.
     zoom: f64,
     /// Middle of the robot in the view \[m\].
     middle: [f64; 2],
@@ -208,16 +187,15 @@ impl Scale {
             })
         };
         let [x, y] = view.map(range);
-        let room = |pixels: f64, [low, high]: [f64; 2]| {
-            f64::from(units(pixels - 2.0 * MARGIN)) / (high - low).max(1e-6)
-        };
+        let room =
+            |pixels: f64, [low, high]: [f64; 2]| (pixels - 2.0 * MARGIN) / (high - low).max(1e-6);
         let zoom = room(VIEW[0], x).min(room(VIEW[1], y));
         Self { view, zoom, middle: [x, y].map(|[low, high]| 0.5 * (low + high)) }
     }
 
-    fn pixel(&self, point: &Vector3<f64>) -> (i32, i32) {
+    fn pixel(&self, point: &Vector3<f64>) -> Place {
         let [x, y] = [0, 1].map(|k| self.zoom * (point.dot(&self.view[k]) - self.middle[k]));
-        (units(0.5 * VIEW[0]) + x as i32, units(0.5 * VIEW[1]) - y as i32)
+        (0.5 * VIEW[0] + x, 0.5 * VIEW[1] - y)
     }
 }
 
@@ -246,7 +224,7 @@ mod tests {
             assert!((axes[j].direction.norm() - 1.0).abs() < 1e-3);
             assert_eq!(upright, [0, 3, 5].contains(&j), "{:?}", axes[j].direction);
         }
-        let svgs = format!("<all>{}</all>", arm_svgs(&robot).unwrap());
+        let svgs = format!("<all>{}</all>", arm_svgs(&robot));
         assert!(roxmltree::Document::parse(&svgs).is_ok() && svgs.matches("joint3").count() == 2);
     }
 }

@@ -1,9 +1,7 @@
 //! The numbers of a suite for the page's script, which draws the interactive figures.
 
-use super::decimate::Point;
 use super::packed::{self, Packed};
-use super::panel::relative;
-use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot, View};
+use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
 use reachtube_conform::data::Side;
 use serde::Serialize;
 
@@ -15,9 +13,12 @@ const COLUMNS: usize = 80;
 struct SuiteData<'a> {
     suite: &'a str,
     joints: &'a [String],
-    /// Units of the states.
+    /// Headings of the joints.
+    headings: Vec<String>,
+    /// Labels of the vertical axes of the states, and units.
+    axes: Vec<String>,
     units: Vec<&'static str>,
-    views: Vec<String>,
+    views: Vec<&'static str>,
     /// Times of the bands and of the nominal motion.
     times: String,
     /// Empty if bands and runs are deviations already.
@@ -68,9 +69,16 @@ struct SpotData {
 /// precision and rounded outward. Where not all runs are drawn, bands are the lowest and highest
 /// bound of each of 80 columns of time, and only deviations are given.
 pub(super) fn suite_json(figure: &SuiteFigure) -> String {
-    let data = if figure.undrawn > 0 { condensed(figure) } else { whole(figure) };
-    let json = serde_json::to_string(&data).expect("the keys are strings and the numbers finite");
-    in_script(&json)
+    let json = |data: &SuiteData| {
+        serde_json::to_string(data).expect("the keys are strings and the numbers finite")
+    };
+    in_script(&if figure.undrawn == 0 {
+        json(&data(figure, &figure.times))
+    } else {
+        let times = (!figure.runs.is_empty()).then(|| packed::times(&figure.times));
+        let columns = columns(figure);
+        json(&SuiteData { columns: true, run_times: times, ..data(&columns, &figure.times) })
+    })
 }
 
 /// Escapes what would end a script element; in JSON it occurs in strings only.
@@ -78,9 +86,9 @@ pub(super) fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
-/// Returns every sample.
-fn whole<'a>(figure: &'a SuiteFigure) -> SuiteData<'a> {
-    let states = 2 * figure.joints.len();
+/// Returns the numbers of a figure. Runs without times of their own have the first of `shared`.
+fn data<'a>(figure: &'a SuiteFigure, shared: &[f64]) -> SuiteData<'a> {
+    let n = figure.joints.len();
     let nominal: Option<Vec<Packed>> = match &figure.nominal {
         Nominal::Shared(rows) => Some(rows.iter().map(|row| Packed::new(row)).collect()),
         _ => None,
@@ -88,85 +96,20 @@ fn whole<'a>(figure: &'a SuiteFigure) -> SuiteData<'a> {
     // Bands are relative to the nominal motion as the script will have it.
     let origin = match &nominal {
         Some(rows) => rows.iter().map(Packed::unpacked).collect(),
-        None => vec![vec![0.0; figure.times.len()]; states],
+        None => vec![vec![0.0; figure.times.len()]; 2 * n],
     };
-    let edges = |band: &Band| {
-        let edge = |rows: &[Vec<f64>], outward: fn(f64) -> f64| -> Vec<Vec<f64>> {
-            let deviation = |(x, origin): (&f64, &f64)| outward(x - origin);
-            let row = |(row, origin): (&Vec<f64>, &Vec<f64>)| {
-                row.iter().zip(origin).map(deviation).collect()
-            };
-            rows.iter().zip(&origin).map(row).collect()
+    let edge = |rows: &[Vec<f64>], packed: fn(Vec<f64>) -> String| -> Vec<String> {
+        let row = |(row, origin): (&Vec<f64>, &Vec<f64>)| {
+            packed(row.iter().zip(origin).map(|(x, origin)| x - origin).collect())
         };
-        [edge(&band.lower, f64::next_down), edge(&band.upper, f64::next_up)]
+        rows.iter().zip(&origin).map(row).collect()
     };
-    let of_run = |run: &'a RunTrace| {
-        let own = (!run.has_times(&figure.times)).then_some(&run.times[..]);
-        run_data(run, own, &run.states)
+    let band = |band: &'a Band| BandData {
+        label: band.label(),
+        lower: edge(&band.lower, |row| packed::lower(row.into_iter().map(f64::next_down))),
+        upper: edge(&band.upper, |row| packed::upper(row.into_iter().map(f64::next_up))),
     };
-    let runs = figure.runs.iter().map(of_run).collect();
-    data(figure, packed::times(&figure.times), nominal, &edges, runs)
-}
-
-/// Returns the deviations of the runs, and of the bands one lower and one upper bound per column.
-fn condensed(figure: &SuiteFigure) -> SuiteData<'_> {
-    let nominal = match &figure.nominal {
-        Nominal::Shared(rows) => Some(rows),
-        _ => None,
-    };
-    let count = figure.times.len();
-    let starts: Vec<usize> = (0..=COLUMNS).map(|column| column * (count - 1) / COLUMNS).collect();
-    let edges = |band: &Band| {
-        let edge = |rows: &[Vec<f64>], outward: fn(f64) -> f64, further: fn(f64, f64) -> f64| {
-            let row = |(state, row): (usize, &Vec<f64>)| -> Vec<f64> {
-                let at = |k: usize| outward(row[k] - nominal.map_or(0.0, |rows| rows[state][k]));
-                let column = |ends: &[usize]| (ends[0]..=ends[1]).map(at).reduce(further);
-                let columns = starts.windows(2).filter_map(column);
-                columns.chain([at(count - 1)]).collect()
-            };
-            rows.iter().enumerate().map(row).collect::<Vec<_>>()
-        };
-        [edge(&band.lower, f64::next_down, f64::min), edge(&band.upper, f64::next_up, f64::max)]
-    };
-    let of_run = |run: &RunTrace| {
-        let line = |(state, row): (usize, &Vec<f64>)| {
-            let nominal = nominal.map(|rows| rows[state].as_slice());
-            relative(&run.times, row, &figure.times, nominal)
-        };
-        let lines: Vec<Vec<Point>> = run.states.iter().enumerate().map(line).collect();
-        let times = lines.first().map_or_else(Vec::new, |line| line.iter().map(|p| p.0).collect());
-        let states = lines.iter().map(|line| line.iter().map(|point| point.1).collect()).collect();
-        (times, states)
-    };
-    let runs = figure.runs.iter().map(|run| {
-        let (times, states): (Vec<f64>, Vec<Vec<f64>>) = of_run(run);
-        run_data(run, (!run.has_times(&figure.times)).then_some(&times), &states)
-    });
-    let runs = runs.collect();
-    let times: Vec<f64> = starts.iter().map(|&k| figure.times[k]).collect();
-    let mut data = data(figure, packed::times(&times), None, &edges, runs);
-    data.views = vec![view_name(View::Deviation)];
-    data.columns = true;
-    data.run_times = (!figure.runs.is_empty()).then(|| packed::times(&figure.times));
-    data
-}
-
-fn data<'a>(
-    figure: &'a SuiteFigure,
-    times: String,
-    nominal: Option<Vec<Packed>>,
-    edges: &dyn Fn(&Band) -> [Vec<Vec<f64>>; 2],
-    runs: Vec<RunData<'a>>,
-) -> SuiteData<'a> {
-    let n = figure.joints.len();
-    let band = |band: &'a Band| {
-        let [lower, upper] = edges(band);
-        BandData {
-            label: if band.label.is_empty() { "reachable set" } else { &band.label },
-            lower: lower.iter().map(|row| packed::lower(row.iter().copied())).collect(),
-            upper: upper.iter().map(|row| packed::upper(row.iter().copied())).collect(),
-        }
-    };
+    let runs: Vec<RunData> = figure.runs.iter().map(|run| run_data(run, shared)).collect();
     let all = || runs.iter().map(|run| &run.states).chain(nominal.as_ref());
     let rounding = |states: std::ops::Range<usize>| {
         let steps = all().flat_map(|rows| &rows[states.clone()]).map(Packed::step);
@@ -175,15 +118,13 @@ fn data<'a>(
     SuiteData {
         suite: &figure.suite,
         joints: &figure.joints,
+        headings: (0..n).map(|joint| figure.heading(joint)).collect(),
+        axes: (0..2 * n).map(|state| figure.axis(state)).collect(),
         units: (0..2 * n).map(|state| figure.state_unit(state)).collect(),
-        views: figure.views().iter().map(|view| view_name(*view)).collect(),
-        times,
+        views: figure.views().iter().map(|view| view.name()).collect(),
+        times: packed::times(&figure.times),
         rounding: [rounding(0..n), rounding(n..2 * n)],
-        bands: [Some(&figure.band), figure.inner.as_ref()]
-            .into_iter()
-            .flatten()
-            .map(band)
-            .collect(),
+        bands: figure.bands().map(band).collect(),
         nominal,
         columns: false,
         run_times: None,
@@ -192,26 +133,46 @@ fn data<'a>(
     }
 }
 
-fn run_data<'a>(run: &'a RunTrace, times: Option<&[f64]>, states: &[Vec<f64>]) -> RunData<'a> {
+/// Returns the deviations, with the bands as their lowest and highest bound in each column of time.
+fn columns(figure: &SuiteFigure) -> SuiteFigure {
+    let deviations = figure.deviations();
+    let last = figure.times.len() - 1;
+    let starts: Vec<usize> = (0..=COLUMNS).map(|column| column * last / COLUMNS).collect();
+    let edge = |rows: &[Vec<f64>], further: fn(f64, f64) -> f64| -> Vec<Vec<f64>> {
+        let row = |row: &Vec<f64>| {
+            let column = |ends: &[usize]| row[ends[0]..=ends[1]].iter().copied().reduce(further);
+            starts.windows(2).filter_map(column).chain([row[last]]).collect()
+        };
+        rows.iter().map(row).collect()
+    };
+    let band = |Band { label, lower, upper }: &Band| Band {
+        label: label.clone(),
+        lower: edge(lower, f64::min),
+        upper: edge(upper, f64::max),
+    };
+    SuiteFigure {
+        times: starts.iter().map(|&k| figure.times[k]).collect(),
+        band: band(&deviations.band),
+        inner: deviations.inner.as_ref().map(band),
+        ..deviations
+    }
+}
+
+fn run_data<'a>(run: &'a RunTrace, shared: &[f64]) -> RunData<'a> {
     RunData {
         name: &run.name,
         order: run.order,
         temperature: run.temperature,
         gauge: run.gauge,
         touches: run.touches,
-        times: times.map(packed::times),
-        states: states.iter().map(|row| Packed::new(row)).collect(),
+        times: (!run.has_times(shared)).then(|| packed::times(&run.times)),
+        states: run.states.iter().map(|row| Packed::new(row)).collect(),
     }
 }
 
 fn spot(spot: &TightSpot) -> SpotData {
     let TightSpot { run, time_s, state, side, margin } = *spot;
     SpotData { run, time: time_s, state, upper: side == Side::Upper, margin }
-}
-
-/// Returns the name by which the page's buttons choose a view.
-pub(super) fn view_name(view: View) -> String {
-    format!("{view:?}").to_lowercase()
 }
 
 #[cfg(test)]
@@ -232,7 +193,7 @@ mod tests {
     fn the_band_of_the_script_encloses_that_of_the_figure() {
         let figure = sample::suite("S", 2);
         let data: Value = serde_json::from_str(&suite_json(&figure)).unwrap();
-        let nominal = whole(&figure).nominal.unwrap();
+        let nominal = super::data(&figure, &figure.times).nominal.unwrap();
         for state in 0..4 {
             let (low, high) = (&data["bands"][0]["lower"], &data["bands"][0]["upper"]);
             let (low, high) = (singles(&low[state]), singles(&high[state]));

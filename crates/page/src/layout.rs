@@ -1,10 +1,6 @@
 //! The grid of a figure in pixels: positions above velocities, one column per joint, at most six
 //! columns in a row.
 
-/// Drawing units per pixel: the drawing library places on integers, and a pixel is too coarse for a
-/// thin band.
-pub(super) const UNITS: f64 = 8.0;
-
 /// Width of a full figure \[px\].
 const WIDTH: f64 = 1240.0;
 /// Largest width of a column \[px\].
@@ -25,16 +21,11 @@ const BELOW_POSITION: f64 = 12.0;
 const BELOW_VELOCITY: f64 = 36.0;
 
 /// Room left of a plot for its tick labels \[px\].
-pub(super) const BESIDE_PLOT: f64 = 44.0;
+const BESIDE_PLOT: f64 = 44.0;
 /// Room right of a plot \[px\].
-pub(super) const AFTER_PLOT: f64 = 10.0;
+const AFTER_PLOT: f64 = 10.0;
 /// Height of a row of the legend \[px\].
 pub(super) const LEGEND_ROW: f64 = 22.0;
-
-/// Converts pixels to drawing units.
-pub(super) fn units(pixels: f64) -> i32 {
-    (pixels * UNITS).round() as i32
-}
 
 /// A rectangle \[px\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,53 +57,32 @@ impl Layout {
         Layout { top: ABOVE + LEGEND_ROW * legend_rows as f64, ..self }
     }
 
-    /// Returns the width of the figure \[px\].
     pub(super) fn width(&self) -> f64 {
         LEFT + self.cell * self.columns as f64
     }
 
-    /// Returns the height of the figure \[px\].
     pub(super) fn height(&self) -> f64 {
         self.top + self.block() * self.joints.div_ceil(self.columns) as f64
     }
 
-    /// Returns the width and height of a plot without its labels \[px\].
-    pub(super) fn plot(&self) -> (f64, f64) {
-        (self.cell - BESIDE_PLOT - AFTER_PLOT, PLOT_HEIGHT)
-    }
-
-    /// Returns the panel of a state: the plot and its tick labels.
-    pub(super) fn panel(&self, state: usize) -> Rect {
+    /// Returns the plot of a state, without its labels: a velocity has its place below the position
+    /// of its joint, with the time axis.
+    pub(super) fn plot(&self, state: usize) -> Rect {
         let joint = state % self.joints;
-        let mut y = self.block_top(state) + JOINT_NAME;
-        if self.is_velocity(state) {
-            y += PLOT_HEIGHT + BELOW_POSITION;
+        let second = if state < self.joints { 0.0 } else { PLOT_HEIGHT + BELOW_POSITION };
+        Rect {
+            x: LEFT + self.cell * (joint % self.columns) as f64 + BESIDE_PLOT,
+            y: self.top + self.block() * (joint / self.columns) as f64 + JOINT_NAME + second,
+            width: self.cell - BESIDE_PLOT - AFTER_PLOT,
+            height: PLOT_HEIGHT,
         }
-        let x = LEFT + self.cell * (joint % self.columns) as f64;
-        Rect { x, y, width: self.cell, height: PLOT_HEIGHT + self.below_plot(state) }
     }
 
-    /// Returns the room below the plot of a state \[px\].
-    pub(super) fn below_plot(&self, state: usize) -> f64 {
-        if self.is_velocity(state) { BELOW_VELOCITY } else { BELOW_POSITION }
-    }
-
-    /// Returns whether the state is a velocity, which is drawn in the lower row with the time axis.
-    pub(super) fn is_velocity(&self, state: usize) -> bool {
-        state >= self.joints
-    }
-
-    /// Returns whether the panel of the state is the first of its row.
+    /// Returns whether the plot of the state is the first of its row.
     pub(super) fn starts_row(&self, state: usize) -> bool {
         (state % self.joints).is_multiple_of(self.columns)
     }
 
-    /// Returns the top of the state's row of joint names \[px\].
-    pub(super) fn block_top(&self, state: usize) -> f64 {
-        self.top + self.block() * ((state % self.joints) / self.columns) as f64
-    }
-
-    /// Returns the height of a joint's name and its two panels \[px\].
     fn block(&self) -> f64 {
         JOINT_NAME + 2.0 * PLOT_HEIGHT + BELOW_POSITION + BELOW_VELOCITY
     }
@@ -133,7 +103,13 @@ mod tests {
     fn panels_of_one_to_ten_joints_fit_without_overlap() {
         for joints in 1..=10 {
             let layout = Layout::new(joints).below(2);
-            let panels: Vec<Rect> = (0..2 * joints).map(|state| layout.panel(state)).collect();
+            let panel = |state: usize| {
+                let Rect { x, y, width, height } = layout.plot(state);
+                let below = if state < joints { BELOW_POSITION } else { BELOW_VELOCITY };
+                let (x, width) = (x - BESIDE_PLOT, width + BESIDE_PLOT + AFTER_PLOT);
+                Rect { x, y, width, height: height + below }
+            };
+            let panels: Vec<Rect> = (0..2 * joints).map(panel).collect();
             for (k, a) in panels.iter().enumerate() {
                 assert!(
                     a.x + a.width <= layout.width() && a.y + a.height <= layout.height(),

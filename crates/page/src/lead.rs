@@ -6,17 +6,12 @@ use reachtube_pipeline::{Built, HorizonWidths};
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::{significant, two_digits_up};
 
-use crate::chart::{Chart, Series};
+use crate::chart::{Area, Chart, Series};
 use crate::error::Result;
 use crate::page::Lead;
 use crate::sources::{Sources, joint_name};
+use crate::svg::{BLUE, GREY, INK, RED};
 use crate::text::capital;
-
-/// Blue, grey, black and red.
-const MAIN: [u8; 3] = [18, 70, 200];
-const OTHER: [u8; 3] = [140, 149, 159];
-const CHOSEN: [u8; 3] = [31, 35, 40];
-const LIMIT: [u8; 3] = [207, 19, 34];
 
 /// The farthest horizon that is drawn, in multiples of the one that was chosen.
 const FARTHEST: f64 = 4.0;
@@ -117,15 +112,14 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     };
     let own = of(joint);
     let ([first, .., last], most) = (&own[..], built.largest_ratio()) else { return None };
-    let line = |points, colour| Series { points, dots: false, colour };
     let others = (0..model.joints()).filter(|other| *other != joint);
-    let mut series: Vec<Series> = others.map(|other| line(of(other), OTHER)).collect();
+    let mut series: Vec<Series> = others.map(|other| Series::line(of(other), GREY)).collect();
     let highest = series.iter().flat_map(|series| &series.points).chain(&own);
     let highest = highest.map(|point| point.1).fold(100.0 * most, f64::max);
-    series.push(line(vec![(first.0, 100.0 * most), (last.0, 100.0 * most)], LIMIT));
-    series.push(line(vec![(horizon, 0.0), (horizon, highest)], CHOSEN));
-    series.push(line(own.clone(), MAIN));
-    series.push(Series { points: own.clone(), dots: true, colour: MAIN });
+    series.push(Series::line([first, last].map(|end| (end.0, 100.0 * most)).to_vec(), RED));
+    series.push(Series::line(vec![(horizon, 0.0), (horizon, highest)], INK));
+    series.push(Series::line(own.clone(), BLUE));
+    series.push(Series::dots(own.clone(), BLUE));
     let reason = built.made.iter().find(|choice| choice.key == "horizon");
     let reason = reason.map_or_else(String::new, |choice| because(horizon, &choice.reason));
     let first = built.horizons.iter().find(|widths| widths.with_fit);
@@ -142,14 +136,8 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
          within one data set.",
         100.0 * most
     );
-    let chart = Chart {
-        title: format!("Half the set of {name} by its motion"),
-        x: "horizon [s]".into(),
-        y: "half the set / motion [%]".into(),
-        area: Vec::new(),
-        series,
-    };
-    Some((chart, caption))
+    let title = format!("Half the set of {name} by its motion");
+    Some((Chart::new(title, "horizon [s]", "half the set / motion [%]", series), caption))
 }
 
 /// Returns why a horizon \[s\] was chosen, as a sentence: windows that are not drawn may decide.
@@ -200,13 +188,9 @@ fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
         };
         longest.times.chunks(step).zip(values.chunks(step)).map(of).collect()
     };
-    let back = edge(&lower, -1.0).into_iter().rev();
-    let area = edge(&upper, 1.0).into_iter().chain(back).collect();
-    let mut series = vec![Series {
-        points: longest.times.iter().copied().zip(nominal).collect(),
-        dots: false,
-        colour: OTHER,
-    }];
+    let area = Area { lower: edge(&lower, -1.0), upper: edge(&upper, 1.0) };
+    let nominal = longest.times.iter().copied().zip(nominal).collect();
+    let mut series = vec![Series::line(nominal, GREY)];
     let suites = problem.recordings().suites.iter();
     let runs = suites.filter(|suite| suite.entry.name == longest.suite).flat_map(|s| &s.runs);
     let is_drawn =
@@ -214,7 +198,7 @@ fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
     for summary in runs.filter(|run| is_drawn(run.index)).take(MOST_RUNS) {
         let run = problem.run(summary.index)?;
         let points = (0..run.len()).map(|k| (run.times[k], run.q(k)[joint])).collect();
-        series.push(Series { points, dots: false, colour: MAIN });
+        series.push(Series::line(points, BLUE));
     }
     let (name, suite) = (joint_name(model, joint), &longest.suite);
     let with = if noise > 0.0 { " with V" } else { "" };
@@ -223,14 +207,9 @@ fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
          set{with} (grey area), the nominal motion (grey line) and the recorded motion (blue)."
     );
     let unit = model.drive.robot.joints[joint].kind.position_unit();
-    let chart = Chart {
-        title: format!("{name} in suite {suite}"),
-        x: "time [s]".into(),
-        y: format!("position [{unit}]"),
-        area,
-        series,
-    };
-    Ok(Some((chart, caption)))
+    let title = format!("{name} in suite {suite}");
+    let chart = Chart::new(title, "time [s]", format!("position [{unit}]"), series);
+    Ok(Some((Chart { areas: vec![area], ..chart }, caption)))
 }
 
 #[cfg(test)]

@@ -1,12 +1,11 @@
 //! The legend of a figure: bands, colours and rings, in lines that fit the figure's width.
 
-use super::canvas::{Canvas, DrawResult};
+use super::chart::Mark;
 use super::colour::{Heat, colour};
-use super::layout::{LEGEND_ROW, units};
-use super::style::{BAND, INNER, font, ring, starting};
-use super::suite_figure::{SuiteFigure, View};
-use super::text::clean;
-use plotters::prelude::*;
+use super::layout::LEGEND_ROW;
+use super::plot::{BANDS, ring};
+use super::suite_figure::{Band, SuiteFigure, View};
+use super::svg::{Anchor, Colour, Svg};
 
 /// Left edge of the first entry \[px\].
 const LEFT: f64 = 20.0;
@@ -31,15 +30,14 @@ enum Entry {
     /// The suite and the view.
     Title(String),
     /// Fill and edge of a band, and its label.
-    Band([RGBColor; 2], String),
+    Band([Colour; 2], String),
     /// The scale of the runs' colours, and the labels of its ends.
     Scale([String; 2]),
-    /// Whether the ring marks samples outside the set, and its label.
-    Ring(bool, String),
+    /// What the ring marks, and its label.
+    Ring(Mark, String),
 }
 
 impl Entry {
-    /// Estimates the width \[px\].
     fn width(&self) -> f64 {
         let text = |text: &str| text.chars().count() as f64 * CHARACTER;
         match self {
@@ -61,19 +59,18 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// Returns the legend of a suite for a figure of a width \[px\].
     pub(super) fn new(figure: &SuiteFigure, view: View, heat: &Heat, width: f64) -> Self {
-        let mut entries = vec![Entry::Title(title(figure, view)), band(BAND, &figure.band.label)];
-        entries.extend(figure.inner.iter().map(|inner| band(INNER, &inner.label)));
+        let mut entries = vec![Entry::Title(title(figure, view)), band(BANDS[0], &figure.band)];
+        entries.extend(figure.inner.iter().map(|inner| band(BANDS[1], inner)));
         if !figure.runs.is_empty() {
             entries.push(Entry::Scale(heat.ends.clone()));
         }
         let outside = figure.tight.iter().filter(|spot| spot.margin < 0.0).count();
         if outside < figure.tight.len() {
-            entries.push(Entry::Ring(false, "tight spot".into()));
+            entries.push(Entry::Ring(Mark::Decides, "tight spot".into()));
         }
         if outside > 0 {
-            entries.push(Entry::Ring(true, "outside the set".into()));
+            entries.push(Entry::Ring(Mark::Outside, "outside the set".into()));
         }
         Legend { entries: flow(entries, width) }
     }
@@ -82,11 +79,10 @@ impl Legend {
         self.entries.last().map_or(0, |entry| entry.2 + 1)
     }
 
-    /// Draws the legend at the top of the figure.
-    pub(super) fn draw(&self, canvas: &Canvas) -> DrawResult {
-        self.entries.iter().try_for_each(|(entry, x, row)| {
-            draw_entry(canvas, entry, *x, 6.0 + LEGEND_ROW * (*row as f64 + 0.5))
-        })
+    pub(super) fn draw(&self, svg: &mut Svg) {
+        for (entry, x, row) in &self.entries {
+            draw_entry(svg, entry, *x, 6.0 + LEGEND_ROW * (*row as f64 + 0.5));
+        }
     }
 }
 
@@ -95,11 +91,11 @@ fn title(figure: &SuiteFigure, view: View) -> String {
         View::Motion => "motion",
         View::Deviation => "deviation from the nominal",
     };
-    format!("{}: {what}", clean(&figure.suite))
+    format!("{}: {what}", figure.suite)
 }
 
-fn band(colours: [RGBColor; 2], label: &str) -> Entry {
-    Entry::Band(colours, if label.is_empty() { "reachable set".into() } else { clean(label) })
+fn band(colours: [Colour; 2], band: &Band) -> Entry {
+    Entry::Band(colours, band.label().into())
 }
 
 /// Places entries from left to right, on a new row where the next one does not fit.
@@ -118,50 +114,34 @@ fn flow(entries: Vec<Entry>, width: f64) -> Vec<Placed> {
 }
 
 /// Draws an entry whose left edge is `x` and whose middle is `y` \[px\].
-fn draw_entry(canvas: &Canvas, entry: &Entry, x: f64, y: f64) -> DrawResult {
+fn draw_entry(svg: &mut Svg, entry: &Entry, x: f64, y: f64) {
+    let label = |svg: &mut Svg, text: &str, x: f64| svg.text((x, y), text, &Anchor::Start, 11.5);
     match entry {
-        Entry::Title(title) => write(canvas, title, x, y, font(13.0, FontStyle::Bold)),
-        Entry::Band(colours, label) => {
-            draw_band(canvas, *colours, x, y)?;
-            write_label(canvas, label, x + SWATCH + LABEL_GAP, y)
+        Entry::Title(title) => svg.bold((x, y), title, &Anchor::Start, 13.0),
+        Entry::Band([fill, edge], text) => {
+            svg.rectangle((x, y - 5.0), [SWATCH, 10.0], *fill);
+            for y in [y - 5.0, y + 5.0] {
+                svg.line(&[(x, y), (x + SWATCH, y)], *edge, 1.0);
+            }
+            label(svg, text, x + SWATCH + LABEL_GAP);
         }
-        Entry::Scale(ends) => draw_scale(canvas, ends, x, y),
-        Entry::Ring(outside, label) => {
-            canvas.draw(&ring((units(x + SWATCH / 2.0), units(y)), *outside))?;
-            write_label(canvas, label, x + SWATCH + LABEL_GAP, y)
+        Entry::Scale([first, last]) => {
+            label(svg, first, x);
+            let x = x + first.chars().count() as f64 * CHARACTER + LABEL_GAP;
+            for k in 0..SCALE_STEPS {
+                let from = SCALE * k as f64 / SCALE_STEPS as f64;
+                // Each colour reaches to the end, under the next: edges that only meet show as
+                // seams.
+                let fill = colour(k as f64 / (SCALE_STEPS - 1) as f64);
+                svg.rectangle((x + from, y - 4.0), [SCALE - from, 8.0], fill);
+            }
+            label(svg, last, x + SCALE + LABEL_GAP);
+        }
+        Entry::Ring(mark, text) => {
+            ring(svg, *mark, (x + SWATCH / 2.0, y));
+            label(svg, text, x + SWATCH + LABEL_GAP);
         }
     }
-}
-
-fn draw_band(canvas: &Canvas, [fill, edge]: [RGBColor; 2], x: f64, y: f64) -> DrawResult {
-    let corners = [(units(x), units(y - 5.0)), (units(x + SWATCH), units(y + 5.0))];
-    canvas.draw(&Rectangle::new(corners, fill.filled()))?;
-    corners.iter().try_for_each(|(_, height)| {
-        let path = vec![(corners[0].0, *height), (corners[1].0, *height)];
-        canvas.draw(&PathElement::new(path, edge.stroke_width(8)))
-    })
-}
-
-fn draw_scale(canvas: &Canvas, ends: &[String; 2], x: f64, y: f64) -> DrawResult {
-    write_label(canvas, &ends[0], x, y)?;
-    let x = x + ends[0].chars().count() as f64 * CHARACTER + LABEL_GAP;
-    let step = SCALE / SCALE_STEPS as f64;
-    for k in 0..SCALE_STEPS {
-        let from = x + step * k as f64;
-        // Each colour reaches to the end, under the next: edges that only meet show as seams.
-        let corners = [(units(from), units(y - 4.0)), (units(x + SCALE), units(y + 4.0))];
-        let fill = colour(k as f64 / (SCALE_STEPS - 1) as f64).filled();
-        canvas.draw(&Rectangle::new(corners, fill))?;
-    }
-    write_label(canvas, &ends[1], x + SCALE + LABEL_GAP, y)
-}
-
-fn write_label(canvas: &Canvas, text: &str, x: f64, y: f64) -> DrawResult {
-    write(canvas, text, x, y, font(11.5, FontStyle::Normal))
-}
-
-fn write(canvas: &Canvas, text: &str, x: f64, y: f64, font: FontDesc<'static>) -> DrawResult {
-    canvas.draw_text(text, &starting(font), (units(x), units(y)))
 }
 
 #[cfg(test)]
@@ -170,7 +150,8 @@ mod tests {
 
     #[test]
     fn entries_wrap_within_the_width() {
-        let entries = (0..9).map(|_| Entry::Ring(false, "a label of some length".into())).collect();
+        let entries =
+            (0..9).map(|_| Entry::Ring(Mark::Decides, "a label of some length".into())).collect();
         let placed = flow(entries, 600.0);
         assert!(placed.iter().all(|(entry, x, _)| x + entry.width() <= 600.0));
         assert!(placed.last().is_some_and(|entry| entry.2 >= 2));
@@ -181,7 +162,7 @@ mod tests {
         // Measured in DejaVu Sans at 13 px, bold.
         let title = "UR10e-load-5kg: deviation from the nominal";
         let (wide, entry) = (8.1 * title.len() as f64, Entry::Title(title.into()));
-        let placed = flow(vec![entry, Entry::Ring(false, "tight spot".into())], 900.0);
+        let placed = flow(vec![entry, Entry::Ring(Mark::Decides, "tight spot".into())], 900.0);
         assert!(placed[1].2 == 0 && placed[1].1 >= LEFT + wide, "{}", placed[1].1);
     }
 

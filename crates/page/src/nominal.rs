@@ -5,8 +5,8 @@ use reachtube_conform::Model;
 use reachtube_conform::fit::{FitRecord, FittedParameter};
 use reachtube_finding::Finding;
 
-use crate::cost::cost_unit;
-use crate::text_table::{TextTable, change};
+use crate::cost::{change, cost_unit};
+use reachtube_finding::Table;
 use reachtube_scalar::number::four_decimals;
 
 /// The column of standard errors in the table of parameters.
@@ -28,16 +28,12 @@ pub(super) fn nominal_facts(model: &Model) -> Vec<(String, String)> {
 }
 
 /// Returns the tables about a fitted nominal model: what the sets cost, and its parameters.
-pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
+pub(super) fn nominal_tables(model: &Model) -> Vec<Table> {
     let Some(fit) = &model.fit else { return Vec::new() };
     let changed = fit.parameters.iter().filter(|p| p.has_changed());
-    let mut parameters = TextTable {
-        title: "Parameters that changed".into(),
-        header: ["Parameter", "Identified", "Standard error", "Fitted", "Factor"]
-            .map(String::from)
-            .to_vec(),
-        rows: changed.map(|p| parameter(model, p)).collect(),
-    };
+    let header = ["Parameter", "Identified", "Standard error", "Fitted", "Factor"];
+    let mut parameters = Table::new(header, changed.map(|p| parameter(model, p)).collect())
+        .titled("Parameters that changed");
     if fit.parameters.iter().all(|p| p.standard_error.is_none()) {
         parameters.header.remove(STANDARD_ERROR);
         parameters.rows.iter_mut().for_each(|row| drop(row.remove(STANDARD_ERROR)));
@@ -45,8 +41,7 @@ pub(super) fn nominal_tables(model: &Model) -> Vec<TextTable> {
     vec![costs(model, fit), parameters]
 }
 
-/// Returns the costs of the smallest sets for all motions, for several nominal models.
-fn costs(model: &Model, fit: &FitRecord) -> TextTable {
+fn costs(model: &Model, fit: &FitRecord) -> Table {
     let row = |name: String, cost: Option<f64>| {
         let change = |cost| change(cost, fit.identified_cost);
         let none = || "a nominal motion runs away".into();
@@ -64,20 +59,10 @@ fn costs(model: &Model, fit: &FitRecord) -> TextTable {
     let calibrated = fit
         .identified_calibrated_cost
         .map(|cost| row("Identified, calibrated (not the smallest)".into(), Some(cost)));
-    TextTable {
-        title: "Cost of the smallest sets".into(),
-        header: ["Nominal model", &format!("Cost {}", cost_unit(model)), "Change"]
-            .map(String::from)
-            .to_vec(),
-        rows: first
-            .map(|(name, cost)| row(name.into(), Some(cost)))
-            .into_iter()
-            .chain(groups)
-            .chain(left_out)
-            .chain([mean])
-            .chain(calibrated)
-            .collect(),
-    }
+    let first = first.map(|(name, cost)| row(name.into(), Some(cost))).into_iter();
+    let rows = first.chain(groups).chain(left_out).chain([mean]).chain(calibrated).collect();
+    Table::new(["Nominal model", &format!("Cost {}", cost_unit(model)), "Change"], rows)
+        .titled("Cost of the smallest sets")
 }
 
 fn parameter(model: &Model, p: &FittedParameter) -> Vec<String> {

@@ -40,7 +40,6 @@ impl Packed {
         Self { base, step, deltas }
     }
 
-    /// Returns the step, in the unit of the values.
     pub(super) fn step(&self) -> f64 {
         self.step
     }
@@ -57,17 +56,14 @@ impl Packed {
     }
 }
 
-/// Packs times \[s\] without rounding.
 pub(super) fn times(times: &[f64]) -> String {
     STANDARD.encode(times.iter().flat_map(|time| time.to_le_bytes()).collect::<Vec<u8>>())
 }
 
-/// Packs lower bounds in single precision, rounded down.
 pub(super) fn lower(values: impl Iterator<Item = f64>) -> String {
     singles(values.map(down))
 }
 
-/// Packs upper bounds in single precision, rounded up.
 pub(super) fn upper(values: impl Iterator<Item = f64>) -> String {
     singles(values.map(|value| -down(-value)))
 }

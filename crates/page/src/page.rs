@@ -2,7 +2,7 @@
 
 use super::chart::Chart;
 use super::suite_figure::SuiteFigure;
-use super::text_table::TextTable;
+use reachtube_finding::Table;
 use reachtube_robot::JointKind;
 
 /// A closed interval `[lower, upper]`, in the unit that the field holding it names.
@@ -24,11 +24,11 @@ pub struct Page {
     /// The phase planes of the joints, if the model is linear.
     pub(crate) phase_planes: Vec<Chart>,
     /// What was fitted of the nominal model, for a model that was.
-    pub(crate) nominal: Vec<TextTable>,
+    pub(crate) nominal: Vec<Table>,
     /// The uncertainty sets: one table per notion of conformance (Table II has two).
     pub(crate) sets: Vec<SetsTable>,
     /// What the cost of the sets comes from.
-    pub(crate) cost: Vec<TextTable>,
+    pub(crate) cost: Vec<Table>,
     /// The runs over what the cost may depend on.
     pub(crate) cost_charts: Vec<Chart>,
     /// Settings and provenance: name and value.

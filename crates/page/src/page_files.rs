@@ -53,7 +53,7 @@ pub fn figure_files(page: &Page) -> Result<Vec<PageFile>> {
     let mut files = Vec::new();
     for (figure, name) in page.suites.iter().zip(names) {
         for &view in figure.views() {
-            let path = format!("{name}_{}.svg", format!("{view:?}").to_lowercase()).into();
+            let path = format!("{name}_{}.svg", view.name()).into();
             files.push(PageFile { path, content: suite_svg(figure, view)?.into_bytes() });
         }
     }

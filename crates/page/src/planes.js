@@ -3,15 +3,18 @@
 function planeTraces({ series }, place) {
   const lighter = c => (isDark.matches ? Math.round(c + (255 - c) * 0.35) : c);
   const ink = colour => `rgb(${colour.map(lighter).join()})`;
-  return series.map(({ x, y, dots, colour }, k) => ({
-    type: "scatter", mode: dots ? "markers" : "lines", x, y, uid: `plane${place}-${k}x`,
+  return series.map(({ points, mark, colour }, k) => ({
+    type: "scatter", mode: mark === "dots" ? "markers" : "lines", uid: `plane${place}-${k}x`,
+    x: points.map(p => p[0]), y: points.map(p => p[1]),
     line: { color: ink(colour), width: 1.3 }, marker: { color: ink(colour), size: 5 },
-    ...(dots ? { hovertemplate: "%{x:.6~g}, %{y:.6~g}<extra></extra>" } : { hoverinfo: "skip" }),
+    ...(mark === "dots"
+      ? { hovertemplate: "%{x:.6~g}, %{y:.6~g}<extra></extra>" } : { hoverinfo: "skip" }),
   }));
 }
 
-// Returns the range of values with room beyond its ends.
-function withMargin(values) {
+// Returns the range of a coordinate of all points with room beyond its ends.
+function rangeOf(series, coordinate) {
+  const values = series.flatMap(({ points }) => points.map(p => p[coordinate]));
   const [low, high] = [Math.min(...values), Math.max(...values)];
   const margin = 0.05 * (high - low) || 0.5;
   return [low - margin, high + margin];
@@ -33,12 +36,8 @@ function planeLayout({ title, x, y, series }, width) {
     font: { family: "inherit", size: 11, color: ink }, showlegend: false, hovermode: "closest",
     modebar: { bgcolor: "rgba(0,0,0,0)", color: soft, activecolor: ink },
     hoverlabel: { bgcolor: css("--raised"), bordercolor: soft, font: { color: ink } },
-    xaxis: {
-      ...axis, title: { text: x, standoff: 4 }, range: withMargin(series.flatMap(s => s.x)),
-    },
-    yaxis: {
-      ...axis, title: { text: y, standoff: 4 }, range: withMargin(series.flatMap(s => s.y)),
-    },
+    xaxis: { ...axis, title: { text: x, standoff: 4 }, range: rangeOf(series, 0) },
+    yaxis: { ...axis, title: { text: y, standoff: 4 }, range: rangeOf(series, 1) },
   };
 }
 

@@ -3,8 +3,8 @@
 use super::chart::{Chart, Series};
 use super::page::{JointSets, Lead, Page, SetsTable, Verdict};
 use super::suite_figure::{Band, Nominal, RunTrace, SuiteFigure, TightSpot};
-use super::text_table::TextTable;
 use reachtube_conform::data::Side;
+use reachtube_finding::Table;
 use reachtube_robot::JointKind;
 
 /// Returns a suite of sine motions with three runs, two bands, and two tight spots.
@@ -63,7 +63,6 @@ fn wave(times: &[f64], state: usize) -> Vec<f64> {
     times.iter().map(|t| (t * (1.0 + state as f64)).sin()).collect()
 }
 
-/// Returns a table of the sets of a number of joints.
 pub(super) fn sets(joints: usize) -> SetsTable {
     let row = |joint| JointSets {
         joint: format!("joint {joint}"),
@@ -86,7 +85,7 @@ pub(super) fn page() -> Page {
         title: hostile("title"),
         subtitle: hostile("subtitle"),
         phase_planes: vec![phase_plane()],
-        cost: vec![TextTable { title: "drivers".into(), ..TextTable::default() }],
+        cost: vec![Table { title: "drivers".into(), ..Table::default() }],
         cost_charts: vec![phase_plane()],
         verdict: Verdict {
             vacuous: false,
@@ -105,11 +104,9 @@ pub(super) fn page() -> Page {
             links: vec![(hostile("link"), "../held-out/report.html".into())],
         },
         suites: vec![suite(&hostile("A"), 2), suite("B", 7)],
-        nominal: vec![TextTable {
-            title: hostile("table"),
-            header: vec![hostile("header")],
-            rows: vec![vec![hostile("cell")]],
-        }],
+        nominal: vec![
+            Table::new([hostile("header")], vec![vec![hostile("cell")]]).titled(hostile("table")),
+        ],
         sets: vec![sets(2)],
         facts: vec![(hostile("name"), hostile("value"))],
         trust: vec![hostile("trust")],
@@ -120,17 +117,8 @@ pub(super) fn page() -> Page {
 
 /// Returns a phase plane with a set and two points.
 fn phase_plane() -> Chart {
-    let line = |points: Vec<(f64, f64)>| Series { points, dots: false, colour: [18, 70, 200] };
-    let dots = Series { points: vec![(0.1, 0.2), (0.3, 0.1)], dots: true, colour: [222, 110, 0] };
-    Chart {
-        title: "joint 1, 0.500 s".into(),
-        x: "position [rad]".into(),
-        y: "velocity [rad/s]".into(),
-        area: Vec::new(),
-        series: vec![
-            line(vec![(-0.5, 0.0), (0.0, -0.5), (0.5, 0.0)]),
-            line(vec![(-0.5, 0.0), (0.0, 0.5), (0.5, 0.0)]),
-            dots,
-        ],
-    }
+    let corners = vec![(-0.5, 0.0), (0.0, -0.5), (0.5, 0.0), (0.0, 0.5), (-0.5, 0.0)];
+    let dots = Series::dots(vec![(0.1, 0.2), (0.3, 0.1)], [222, 110, 0]);
+    let series = vec![Series::line(corners, [18, 70, 200]), dots];
+    Chart::new("joint 1, 0.500 s", "position [rad]", "velocity [rad/s]", series)
 }

@@ -1,13 +1,11 @@
 //! The scripts at the end of the page: its controls, the numbers of its figures, and the library
 //! that draws them.
 
-use super::chart::{Chart, Series};
 use super::colour;
 use super::interactive::{in_script, suite_json};
 use super::library::{Assets, compressed_library};
 use super::page::Page;
 use maud::{Markup, PreEscaped, html};
-use serde::Serialize;
 
 const SCRIPT: &str = concat!(
     include_str!("numbers.js"),
@@ -15,23 +13,6 @@ const SCRIPT: &str = concat!(
     include_str!("planes.js"),
     include_str!("page.js")
 );
-
-/// A chart for the script.
-#[derive(Serialize)]
-struct ChartData<'a> {
-    title: &'a str,
-    x: &'a str,
-    y: &'a str,
-    series: Vec<SeriesData>,
-}
-
-#[derive(Serialize)]
-struct SeriesData {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    dots: bool,
-    colour: [u8; 3],
-}
 
 /// Returns the scripts of a page with figures; no text for a page without figures.
 ///
@@ -42,29 +23,18 @@ pub(super) fn scripts(page: &Page, assets: Assets) -> Markup {
     if page.suites.is_empty() {
         return Markup::default();
     }
-    let anchors = serde_json::to_string(&colour::ANCHORS).expect("numbers are finite");
+    let json = |data: serde_json::Result<String>| in_script(&data.expect("numbers are finite"));
+    let anchors = json(serde_json::to_string(&colour::ANCHORS));
+    let planes = json(serde_json::to_string(&page.phase_planes));
     html! {
         (text("application/json", "scale", &anchors))
-        (text("application/json", "plane-data", &charts(&page.phase_planes)))
+        (text("application/json", "plane-data", &planes))
         script { (PreEscaped("\n")) (PreEscaped(SCRIPT)) }
         @for (index, suite) in page.suites.iter().enumerate() {
             (text("application/json", &format!("data-{index}"), &suite_json(suite)))
         }
         @if assets == Assets::Inside { (text("text/plain", "library", &compressed_library())) }
     }
-}
-
-fn charts(charts: &[Chart]) -> String {
-    let series = |series: &Series| {
-        let (x, y) = series.points.iter().copied().unzip();
-        SeriesData { x, y, dots: series.dots, colour: series.colour }
-    };
-    let chart = |chart: &'_ Chart| {
-        let Chart { title, x, y, .. } = chart;
-        let series = chart.series.iter().map(series).collect();
-        serde_json::to_string(&ChartData { title, x, y, series }).expect("numbers are finite")
-    };
-    in_script(&format!("[{}]", charts.iter().map(chart).collect::<Vec<_>>().join(",")))
 }
 
 /// Returns a script element that the browser does not run.

@@ -2,7 +2,6 @@
 
 use super::terms::Explained;
 use super::text::{Text, capital};
-use super::text_table::TextTable;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use reachtube_finding::Table;
 
@@ -103,29 +102,46 @@ pub(super) fn wide_table(class: &str, caption: &str, head: &Markup, rows: &Marku
     }
 }
 
-/// Returns a table of texts whose cells are broken into lines.
-pub fn long_table(table: &TextTable) -> Markup {
-    let head = html! {
-        @for name in &table.header { th scope="col" { (Explained(name)) } }
+/// Returns a table as [`wide_table`] lays it out, with columns of numbers aligned right.
+pub fn table(class: &str, table: &Table) -> Markup {
+    let is_number = |cell: &String| {
+        matches!(&**cell, "" | "none")
+            || cell.starts_with(|c: char| c.is_ascii_digit() || "+-\u{2212}".contains(c))
     };
-    wide_table("long", &table.title, &head, &named_rows(&table.rows))
-}
-
-/// Returns a table of the library; all but names are numbers.
-pub(super) fn laid_out(table: &Table) -> Markup {
+    let are_numbers =
+        |column: usize| column > 0 && table.rows.iter().all(|row| is_number(&row[column]));
+    let numbers: Vec<bool> = (0..table.header.len()).map(are_numbers).collect();
     let head = html! {
-        @for name in &table.header { th scope="col" { (Text(name)) } }
+        @for (name, number) in table.header.iter().zip(&numbers) {
+            th.number[*number] scope="col" { (Explained(name)) }
+        }
     };
-    wide_table("sets", &capital(&table.title), &head, &named_rows(&table.rows))
-}
-
-/// Returns rows of texts; the first cell of each names it.
-pub(super) fn named_rows(rows: &[Vec<String>]) -> Markup {
-    html! {
-        @for cells in rows {
+    let rows = html! {
+        @for cells in &table.rows {
             tr {
                 th scope="row" { (Text(&cells[0])) }
-                @for cell in &cells[1..] { td { (Text(cell)) } }
+                @for (cell, number) in cells.iter().zip(&numbers).skip(1) {
+                    td.number[*number] { (Text(cell)) }
+                }
+            }
+        }
+    };
+    wide_table(class, &capital(&table.title), &head, &rows)
+}
+
+/// Returns a table of names and values.
+pub fn fact_table(facts: &[(impl AsRef<str>, String)]) -> Markup {
+    html! {
+        div.wide tabindex="0" role="region" aria-label="Names and values" {
+            table.facts {
+                tbody {
+                    @for (name, value) in facts {
+                        tr {
+                            th scope="row" { (Explained(name.as_ref())) }
+                            td { (Text(value)) }
+                        }
+                    }
+                }
             }
         }
     }

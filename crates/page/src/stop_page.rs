@@ -1,7 +1,5 @@
 //! The page of stopping times and distances, which can be filed.
 
-use std::io::Write;
-
 use maud::{Markup, PreEscaped, html};
 use reachtube_conform::Model;
 use reachtube_finding::{Finding, Table};
@@ -9,18 +7,19 @@ use reachtube_robot::{JointKind, Robot};
 use reachtube_scalar::number::{at_least, significant};
 use reachtube_verify::{AnnexRow, Brakes, StopStudy, annex_table, recorded_table};
 
-use crate::chart::{Chart, Series, chart_svg};
+use crate::chart::{Chart, Series};
 use crate::error::Error;
 use crate::html::warning_list;
-use crate::skeleton::{document, laid_out, section, verdict};
+use crate::plot::chart_svg;
+use crate::skeleton::{document, fact_table, section, table, verdict};
+use crate::svg::{BLUE, GREY, ORANGE};
 use crate::terms::Explained;
-use crate::text::Text;
 
 /// The file name of the page.
 pub const STOP_PAGE_FILE: &str = "stop.html";
 
 /// Grey, blue and orange, for 33, 66 and 100 % of the extension.
-const COLOURS: [[u8; 3]; 3] = [[140, 149, 159], [18, 70, 200], [222, 120, 20]];
+const COLOURS: [[u8; 3]; 3] = [GREY, BLUE, ORANGE];
 
 /// The parts of speed and extension in the table.
 const SPEEDS: [f64; 3] = [0.33, 0.66, 1.0];
@@ -40,12 +39,12 @@ pub struct StopPage<'a> {
     pub warnings: &'a [Finding],
 }
 
-/// Writes the page as one HTML file that needs no other file and no script.
+/// Returns the page as one HTML file that needs no other file and no script.
 ///
 /// # Errors
 ///
-/// Fails for numbers that cannot be drawn, and where `out` fails.
-pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Error> {
+/// Fails for numbers that cannot be drawn.
+pub fn stop_html(page: &StopPage) -> Result<String, Error> {
     let study = page.study;
     let unit = JointKind::any_unit(&page.robot.kinds(), JointKind::position_unit);
     let rows = study.annex_b.as_ref().map_or(&[][..], |table| &table.rows);
@@ -66,35 +65,34 @@ pub fn write_stop_html(page: &StopPage, out: &mut impl Write) -> Result<(), Erro
         (section("Category 0", &html! {
             p { "Drives off and brakes on at once, at full speed, extension and load. One joint \
                  moves when the stop begins; the three with the greatest distance are listed." }
-            (laid_out(&annex_table(&of(0), &unit)))
+            (table("sets", &annex_table(&of(0), &unit)))
             @for note in notes { p { (Explained(&note.text)) } }
         }))
         @if !of(1).is_empty() {
             (section("Category 1", &html! {
                 p { "A controlled deceleration, then drives off and brakes on." }
                 (charts(&of(1), &unit)?)
-                (laid_out(&by_speed(&of(1), &unit)))
+                (table("sets", &by_speed(&of(1), &unit)))
             }))
         }
         @if !study.recorded.is_empty() {
             (section("Recorded stops", &html! {
                 p { "Measured, and proved from the first recorded state, for the three joints of \
                      each recording that move the most, and any other that is not within." }
-                (laid_out(&recorded_table(&study.recorded, &unit)))
+                (table("sets", &recorded_table(&study.recorded, &unit)))
             }))
         }
         (section("Along the motions", &html! {
             p { "The worst stop of category " (study.category) " from the samples of each motion, \
                  from all states between the lowest and the highest recorded ones." }
-            (laid_out(&study.motions(&unit)))
+            (table("sets", &study.motions(&unit)))
         }))
         (section("Basis", &basis(page)))
     };
     let title = format!("{}: stopping times and distances", page.robot.name());
     let subtitle = "Proved upper bounds, and measurements, if any; the layout of the table \
         follows ISO 10218-1, Annex B";
-    out.write_all(document(&title, subtitle, &body, &Markup::default()).as_bytes())?;
-    Ok(())
+    Ok(document(&title, subtitle, &body, &Markup::default()))
 }
 
 /// Returns the rows of category 1; rows that differ only in speed share a line.
@@ -113,11 +111,8 @@ fn by_speed(rows: &[AnnexRow], unit: &str) -> Table {
         cells.extend(line.iter().map(|row| bound(row.time)));
         cells
     };
-    Table {
-        title: "Proved stopping distances and times at 33, 66 and 100 % of the greatest speed"
-            .into(),
-        ..Table::new(header, lines.map(line).collect())
-    }
+    Table::new(header, lines.map(line).collect())
+        .titled("Proved stopping distances and times at 33, 66 and 100 % of the greatest speed")
 }
 
 /// Returns distances and times over speed, at the greatest load.
@@ -137,18 +132,12 @@ fn charts(rows: &[AnnexRow], unit: &str) -> Result<Markup, Error> {
                 .filter(|row| row.joint == joint && row.load == load && row.extension == extension);
             let proved = chosen.filter(|row| row.is_proved());
             let points = proved.map(|row| (100.0 * row.speed, value(row))).collect();
-            Series { points, dots: false, colour }
+            Series::line(points, colour)
         };
-        let series: Vec<Series> = COLOURS.into_iter().enumerate().map(of_extension).collect();
+        let series = COLOURS.into_iter().enumerate().map(of_extension);
         // The axes begin at 0.
-        let zero = Series { points: vec![(0.0, 0.0)], dots: false, colour: COLOURS[0] };
-        Chart {
-            title: joint.into(),
-            x: "speed [%]".into(),
-            y,
-            area: Vec::new(),
-            series: series.into_iter().chain([zero]).collect(),
-        }
+        let zero = Series::line(vec![(0.0, 0.0)], COLOURS[0]);
+        Chart::new(joint, "speed [%]", y, series.chain([zero]).collect())
     };
     let distances =
         joints.iter().map(|joint| chart(joint, format!("distance [{unit}]"), |row| row.way));
@@ -166,7 +155,6 @@ fn charts(rows: &[AnnexRow], unit: &str) -> Result<Markup, Error> {
     })
 }
 
-/// Returns what the numbers rest on.
 fn basis(page: &StopPage) -> Markup {
     let StopPage { robot, model, brakes, .. } = *page;
     let numbers =
@@ -204,14 +192,6 @@ fn basis(page: &StopPage) -> Markup {
              with friction and gravity, for all brake torques, delays and errors within the ranges \
              below. A robot outside these ranges may need longer. Measure them, and compare \
              recorded stops. Postures of greatest extension come from a search." }
-        div.wide {
-            table.facts {
-                tbody {
-                    @for (name, value) in &facts {
-                        tr { th scope="row" { (name) } td { (Text(value)) } }
-                    }
-                }
-            }
-        }
+        (fact_table(&facts))
     }
 }

@@ -1,5 +1,7 @@
 //! The contents of a figure: one test suite with its reachable set, its runs, and its tight spots.
 
+use super::chart::{Area, Chart, Mark, Series};
+use super::decimate::Point;
 use reachtube_conform::data::Side;
 use reachtube_robot::JointKind;
 
@@ -37,7 +39,7 @@ pub struct SuiteFigure {
     /// The largest [`RunTrace::gauge`] of all runs, drawn or not.
     pub furthest: Option<f64>,
     /// How far every run comes out, drawn or not.
-    pub gauges: Vec<RunGauge>,
+    pub(crate) gauges: Vec<RunGauge>,
 }
 
 /// The interval hull of a reachable set over time.
@@ -90,7 +92,7 @@ pub struct RunTrace {
 
 /// How far out a run comes, beside what it may depend on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RunGauge {
+pub(crate) struct RunGauge {
     /// [`RunTrace::order`].
     pub order: usize,
     /// [`RunTrace::temperature`] \[°C\].
@@ -123,9 +125,25 @@ pub enum View {
     Deviation,
 }
 
+impl View {
+    /// Returns the name by which the page's buttons and the files of figures call the view.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            View::Motion => "motion",
+            View::Deviation => "deviation",
+        }
+    }
+}
+
 /// Difference of times that are taken for the same \[s\]; nominal times are rounded to a
 /// picosecond.
 pub(super) const SAME_TIME: f64 = 1e-9;
+
+impl Band {
+    pub(super) fn label(&self) -> &str {
+        if self.label.is_empty() { "reachable set" } else { &self.label }
+    }
+}
 
 impl RunTrace {
     /// Returns whether the run's samples are at the first of some times.
@@ -148,9 +166,98 @@ impl SuiteFigure {
 
     /// Names a state by joint and quantity, such as `elbow, velocity`.
     pub(super) fn state_label(&self, state: usize) -> String {
-        let n = self.joints.len();
-        let quantity = if state < n { "position" } else { "velocity" };
-        format!("{}, {quantity}", self.joints[state % n])
+        format!("{}, {}", self.joints[state % self.joints.len()], self.quantity(state))
+    }
+
+    fn quantity(&self, state: usize) -> &'static str {
+        if state < self.joints.len() { "position" } else { "velocity" }
+    }
+
+    pub(super) fn bands(&self) -> impl Iterator<Item = &Band> {
+        [Some(&self.band), self.inner.as_ref()].into_iter().flatten()
+    }
+
+    /// Returns the heading of a joint's plots, with its units if joints have different ones.
+    pub(super) fn heading(&self, joint: usize) -> String {
+        let unit = self.shared_unit(joint).is_none().then(|| self.state_unit(joint));
+        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}, {unit}/s]"));
+        format!("{}{unit}", self.joints[joint])
+    }
+
+    /// Returns the label of the vertical axis of a state, with the unit if all joints share it.
+    pub(super) fn axis(&self, state: usize) -> String {
+        let unit = self.shared_unit(state).map_or_else(String::new, |unit| format!(" [{unit}]"));
+        format!("{}{unit}", self.quantity(state))
+    }
+
+    /// Describes the plot of a state, runs in the given colours.
+    pub(super) fn chart(&self, state: usize, colours: &[[u8; 3]]) -> Chart {
+        let line = |times: &[f64], values: &[f64]| -> Vec<Point> {
+            times.iter().copied().zip(values.iter().copied()).collect()
+        };
+        let area = |Band { lower, upper, .. }: &Band| {
+            let [lower, upper] = [lower, upper].map(|edge| line(&self.times, &edge[state]));
+            Area { lower, upper }
+        };
+        let runs = self.runs.iter().zip(colours);
+        let mut series: Vec<Series> = runs
+            .map(|(run, colour)| Series::line(line(&run.times, &run.states[state]), *colour))
+            .collect();
+        let spots = self.tight.iter().filter(|spot| spot.state == state);
+        let ring = |spot: &TightSpot| {
+            let line = &series[spot.run].points;
+            let mark = if spot.margin < 0.0 { Mark::Outside } else { Mark::Decides };
+            let point = (!line.is_empty()).then(|| (spot.time_s, interpolate(line, spot.time_s)));
+            point.map(|point| Series { points: vec![point], mark, colour: Default::default() })
+        };
+        let rings: Vec<Series> = spots.filter_map(ring).collect();
+        series.extend(rings);
+        Chart {
+            title: self.heading(state % self.joints.len()),
+            x: "time [s]".into(),
+            y: self.axis(state),
+            areas: self.bands().map(area).collect(),
+            series,
+            rows: Vec::new(),
+        }
+    }
+
+    /// Returns the figure of the deviations from the nominal motion, over its times.
+    pub(super) fn deviations(&self) -> SuiteFigure {
+        let Nominal::Shared(nominal) = &self.nominal else { return self.clone() };
+        let minus = |rows: &[Vec<f64>]| {
+            let row = |(row, nominal): (&Vec<f64>, &Vec<f64>)| {
+                row.iter().zip(nominal).map(|(x, nominal)| x - nominal).collect()
+            };
+            rows.iter().zip(nominal).map(row).collect()
+        };
+        let band = |Band { label, lower, upper }: &Band| Band {
+            label: label.clone(),
+            lower: minus(lower),
+            upper: minus(upper),
+        };
+        let nominal: Vec<Vec<Point>> = nominal
+            .iter()
+            .map(|row| self.times.iter().copied().zip(row.iter().copied()).collect())
+            .collect();
+        let known = self.times[0]..=self.times[self.times.len() - 1];
+        let run = |run: &RunTrace| {
+            let known: Vec<usize> =
+                (0..run.times.len()).filter(|k| known.contains(&run.times[*k])).collect();
+            let row = |(row, nominal): (&Vec<f64>, &Vec<Point>)| {
+                let deviation = |k: &usize| row[*k] - interpolate(nominal, run.times[*k]);
+                known.iter().map(deviation).collect()
+            };
+            let states = run.states.iter().zip(&nominal).map(row).collect();
+            RunTrace { times: known.iter().map(|k| run.times[*k]).collect(), states, ..run.clone() }
+        };
+        SuiteFigure {
+            band: band(&self.band),
+            inner: self.inner.as_ref().map(band),
+            runs: self.runs.iter().map(run).collect(),
+            nominal: Nominal::PerRun,
+            ..self.clone()
+        }
     }
 
     /// Returns the number of drawn samples that decide the sets; samples outside decide nothing.
@@ -160,15 +267,69 @@ impl SuiteFigure {
 
     /// Returns the unit that the positions or the velocities of all joints share, for the quantity
     /// of a state.
-    pub(super) fn shared_unit(&self, state: usize) -> Option<&'static str> {
+    fn shared_unit(&self, state: usize) -> Option<&'static str> {
         let shared = self.kinds.iter().all(|kind| *kind == self.kinds[0]);
         shared.then(|| self.state_unit(state))
     }
 
-    /// Returns the unit of a state.
     pub(super) fn state_unit(&self, state: usize) -> &'static str {
         let n = self.joints.len();
         let kind = self.kinds.get(state % n).copied().unwrap_or_default();
         if state < n { kind.position_unit() } else { kind.velocity_unit() }
+    }
+}
+
+/// Returns the value of a non-empty line at a time; beyond its ends, the value at the end.
+pub(super) fn interpolate(line: &[Point], time: f64) -> f64 {
+    let after = line.partition_point(|point| point.0 < time);
+    if after == 0 || after == line.len() {
+        return line[after.min(line.len() - 1)].1;
+    }
+    let (a, b) = (line[after - 1], line[after]);
+    if time == b.0 { b.1 } else { a.1 + (b.1 - a.1) * ((time - a.0) / (b.0 - a.0)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn the_deviation_of_the_nominal_is_zero() {
+        let mut figure = sample::suite("S", 2);
+        let Nominal::Shared(nominal) = figure.nominal.clone() else {
+            panic!("the sample has a nominal")
+        };
+        figure.runs[0].times = figure.times.clone();
+        figure.runs[0].states = nominal;
+        let states = &figure.deviations().runs[0].states;
+        assert!(states[3].len() == figure.times.len() && states[3].iter().all(|x| *x == 0.0));
+    }
+
+    #[test]
+    fn a_run_on_its_own_times_is_measured_against_the_interpolated_nominal() {
+        let figure = SuiteFigure {
+            joints: vec!["a".into()],
+            times: vec![0.0, 1.0],
+            nominal: Nominal::Shared(vec![vec![2.0, 4.0]]),
+            runs: vec![RunTrace {
+                times: vec![-1.0, 0.5, 1.0, 9.0],
+                states: vec![vec![0.0, 7.0, 9.0, 0.0]],
+                ..RunTrace::default()
+            }],
+            ..SuiteFigure::default()
+        };
+        let RunTrace { times, states, .. } = &figure.deviations().runs[0];
+        assert_eq!((&times[..], &states[0][..]), (&[0.5, 1.0][..], &[4.0, 5.0][..]));
+    }
+
+    #[test]
+    fn marks_sit_on_their_run() {
+        let figure = sample::suite("S", 2);
+        let spot = figure.tight[0];
+        let series = figure.chart(spot.state, &[[0; 3]; 3]).series;
+        let ring = &series[figure.runs.len()];
+        assert_eq!(ring.points[0].1, interpolate(&series[spot.run].points, spot.time_s));
+        assert_eq!(ring.mark, Mark::Decides);
     }
 }

@@ -8,9 +8,10 @@ use reachtube_conform::{Problem, SuiteReach};
 use crate::error::Error;
 use crate::error::Result;
 use crate::figures::MOST_STATIC;
-use crate::panel::interpolate;
 use crate::sources::{Sources, joint_name};
-use crate::suite_figure::{Band, Nominal, RunGauge, RunTrace, SAME_TIME, SuiteFigure, TightSpot};
+use crate::suite_figure::{
+    Band, Nominal, RunGauge, RunTrace, SAME_TIME, SuiteFigure, TightSpot, interpolate,
+};
 
 /// Number of runs up to which all of them are drawn.
 const MOST_RUNS: usize = 200;
@@ -41,7 +42,6 @@ pub fn suite_figures(sources: &Sources) -> Result<Vec<SuiteFigure>> {
     Ok(figures)
 }
 
-/// Orders the suites where there are too many to read through.
 fn put_furthest_first(figures: &mut [SuiteFigure]) {
     if figures.len() > MOST_STATIC {
         figures.sort_by(|a, b| rank(b).partial_cmp(&rank(a)).expect("no rank is NaN"));
@@ -58,7 +58,6 @@ fn rank(figure: &SuiteFigure) -> (f64, usize, usize) {
     (furthest, figure.outside, touches)
 }
 
-/// Makes the figure of one suite.
 fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigure> {
     let Sources { model, problem, check, reach, .. } = *sources;
     let (joints, name) = (model.joints(), &suite.entry.name);
@@ -120,7 +119,6 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     })
 }
 
-/// Returns the number of rows of a suite that lie outside the set.
 fn outside(sources: &Sources, name: &str) -> usize {
     let verdicts = sources.check.verdict.suites.iter().filter(|verdict| verdict.suite == name);
     verdicts.map(|verdict| verdict.violations.count).sum()
@@ -275,7 +273,6 @@ fn trace(
     })
 }
 
-/// Returns the mean of each of `count` columns of row-major values; an empty list for no rows.
 fn means(values: &[f64], count: usize) -> Vec<f64> {
     let rows = values.len() / count;
     if rows == 0 {

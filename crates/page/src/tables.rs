@@ -5,7 +5,6 @@ use super::skeleton::wide_table;
 use super::suite_figure::{SuiteFigure, TightSpot};
 use super::terms::{self, Explained};
 use super::text::Text;
-use super::text_table::TextTable;
 use maud::{Markup, PreEscaped, html};
 use reachtube_conform::data::Side;
 use reachtube_robot::JointKind;
@@ -28,7 +27,6 @@ struct Column {
     intervals: Vec<Bounds>,
 }
 
-/// Returns the uncertainty sets per joint, as Table II.
 pub(super) fn sets(table: &SetsTable) -> Markup {
     let columns = columns(table);
     let cells: Vec<Vec<Markup>> = columns.iter().map(interval_cells).collect();
@@ -145,44 +143,6 @@ fn spot_row(index: usize, suite: &SuiteFigure, spot: &TightSpot) -> Markup {
             td { (side) }
             td.number { (significant(spot.margin, 3)) @if outside { " outside" } }
             td { (suite.state_unit(spot.state)) }
-        }
-    }
-}
-
-/// Returns a table of texts; all columns but the first are numbers.
-pub(super) fn texts(table: &TextTable) -> Markup {
-    let head = html! {
-        @for (column, name) in table.header.iter().enumerate() {
-            th.number[column > 0] scope="col" { (Explained(name)) }
-        }
-    };
-    let rows = html! {
-        @for row in &table.rows {
-            tr {
-                @for (column, cell) in row.iter().enumerate() {
-                    @if column == 0 { th scope="row" { (Text(cell)) } }
-                    @else { td.number { (Text(cell)) } }
-                }
-            }
-        }
-    };
-    wide_table("sets", &table.title, &head, &rows)
-}
-
-/// Returns a table of names and values.
-pub(super) fn facts(facts: &[(String, String)]) -> Markup {
-    html! {
-        div.wide tabindex="0" role="region" aria-label="Names and values" {
-            table.facts {
-                tbody {
-                    @for (name, value) in facts {
-                        tr {
-                            th scope="row" { (Explained(name)) }
-                            td { (Text(value)) }
-                        }
-                    }
-                }
-            }
         }
     }
 }

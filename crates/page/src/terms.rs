@@ -79,7 +79,6 @@ fn with_code(text: &str, buffer: &mut String) {
     }
 }
 
-/// Returns the explanation of a term; empty if it has none.
 pub(super) fn meaning(term: &str) -> &'static str {
     TERMS.iter().find(|(name, _)| *name == term).map_or("", |(_, meaning)| meaning)
 }
@@ -111,7 +110,6 @@ fn found(text: &str) -> Vec<(usize, usize, &'static str)> {
     all
 }
 
-/// Returns all terms as a list, for readers whose screen shows nothing on hover.
 pub(super) fn list() -> Markup {
     html! {
         dl.terms {

@@ -2,13 +2,11 @@
 
 use maud::Render;
 
-/// Replaces the characters that XML forbids by spaces.
 pub(super) fn clean(text: &str) -> String {
     let allowed = |c: char| !c.is_control() && !matches!(c, '\u{FFFE}' | '\u{FFFF}');
     text.chars().map(|c| if allowed(c) { c } else { ' ' }).collect()
 }
 
-/// Returns a text that begins with a capital letter.
 pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())

@@ -1,13 +1,12 @@
 //! The question of a scenario, as every front end asks it.
 
 use reachtube_conform::{CheckJob, Keep, Model, Opened, Progress, Setup};
-use reachtube_files::distinct_names;
-use reachtube_finding::Finding;
+use reachtube_finding::{Finding, Report};
 use reachtube_recordings::RunSource;
 use reachtube_robot::Robot;
 use reachtube_verify::{
     Answer, Body, Capsules, Margin, Scenario, Scene, Verification, Witness, findings,
-    links_without_capsule, picture, report, verify,
+    links_without_capsule, report, verify,
 };
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -171,9 +170,9 @@ impl Verified {
         warnings
     }
 
-    /// Returns the answer as text.
+    /// Returns the answer as a report.
     #[must_use]
-    pub fn report(&self) -> String {
+    pub fn report(&self) -> Report {
         report(&self.motions, &self.body, &self.scene)
     }
 
@@ -194,23 +193,10 @@ impl Verified {
         serde_json::to_value(output).expect("an answer has string keys")
     }
 
-    /// Returns files by their names: a picture of each motion, and the simulated motion that comes
-    /// closest of each that is not safe.
-    #[must_use]
-    pub fn files(&self) -> Vec<(String, String)> {
-        let Self { motions, body, scene, .. } = self;
-        let names = distinct_names(motions.iter().map(|one| one.reach.name()), &["", "_closest"]);
-        let of_motion = |(one, name): (&Verification, String)| {
-            let drawn = (format!("{name}.svg"), picture(one, body, scene));
-            let found = one.closest.as_ref();
-            [drawn].into_iter().chain(found.map(|m| (format!("{name}_closest.csv"), self.csv(m))))
-        };
-        motions.iter().zip(names).flat_map(of_motion).collect()
-    }
-
     /// Returns a simulated motion as CSV, `t,q1,..,qd1,..,tau1,..`, whose torque is the model's
     /// input, and during a stop the torque of the drives.
-    fn csv(&self, found: &Witness) -> String {
+    #[must_use]
+    pub fn csv(&self, found: &Witness) -> String {
         let n = self.body.joint_count();
         let names = |kind: &str| (1..=n).map(|i| format!(",{kind}{i}")).collect::<String>();
         let mut text = format!("t{}{}{}\n", names("q"), names("qd"), names("tau"));

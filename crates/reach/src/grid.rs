@@ -128,7 +128,7 @@ impl TimeGrid {
 
     /// Divides every step into `parts`, a power of two; the times of the samples stay the same.
     #[must_use]
-    pub fn refined(&self, parts: usize) -> Self {
+    pub(crate) fn refined(&self, parts: usize) -> Self {
         let count = self.len().saturating_sub(1) * parts + 1;
         if let Some(h) = self.step {
             return Self::uniform(h / parts as f64, count);

@@ -17,10 +17,9 @@ fn main() {
 fn swept_capsules(bencher: Bencher) {
     let robot = Robot::lwa4p();
     let body = Body::new(&robot, &Capsules::embedded(&robot).unwrap());
-    let times: Vec<f64> = (0..=STEPS).map(|k| 0.004 * k as f64).collect();
     let side = |k: usize, i: usize| Interval::centred((0.01 * k as f64 + i as f64).sin(), 0.01);
     let boxes = (0..STEPS).flat_map(|k| (0..12).map(move |i| side(k, i))).collect();
     let tube = StepBounds::from_boxes(12, boxes);
     let bencher = bencher.counter(ItemsCount::new(STEPS));
-    bencher.bench(|| body.occupancy(black_box(&times), black_box(&tube)));
+    bencher.bench(|| body.occupancy(black_box(&tube)));
 }

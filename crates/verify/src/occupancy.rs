@@ -24,17 +24,9 @@ pub struct SweptCapsule {
     pub radius: f64,
 }
 
-/// The capsules that contain a robot's links over each step of a tube.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Occupancy {
-    times: Vec<f64>,
-    count: usize,
-    swept: Vec<SweptCapsule>,
-}
-
 impl Body {
-    /// Encloses the links over each step of a tube with the sample times `times` (s), one more than
-    /// there are steps; its boxes are of positions (rad; m), and of velocities, which are not used.
+    /// Encloses the links over each step of a tube, whose boxes are of positions (rad; m), and of
+    /// velocities, which are not used. The capsules of a step are in the order of the body's.
     ///
     /// # Guarantee
     ///
@@ -46,15 +38,12 @@ impl Body {
     ///
     /// # Panics
     ///
-    /// Panics when the times or the joints do not fit the tube.
+    /// Panics if the joints do not fit the tube.
     #[must_use]
-    pub fn occupancy(&self, times: &[f64], tube: &StepBounds) -> Occupancy {
-        assert!(times.len() == tube.len() + 1 || tube.is_empty(), "a step lies between two times");
-        let count = self.capsules().len();
+    pub fn occupancy(&self, tube: &StepBounds) -> Vec<Vec<SweptCapsule>> {
         let sweep = |workspace: &mut Workspace, k: usize| self.swept(workspace, tube.bounds(k));
         let steps = (0..tube.len()).into_par_iter().with_min_len(STEPS_PER_TASK);
-        let swept = steps.map_init(Workspace::default, sweep).collect::<Vec<_>>().concat();
-        Occupancy { times: times.to_vec(), count, swept }
+        steps.map_init(Workspace::default, sweep).collect()
     }
 
     /// Encloses the links while the joints lie in a box, whose first n sides are positions.
@@ -84,31 +73,5 @@ impl Body {
     pub fn placed(&self, q: &[f64]) -> Vec<SweptCapsule> {
         let positions: Vec<Interval> = q.iter().map(|q| Interval::point(*q)).collect();
         self.swept(&mut Workspace::default(), &positions)
-    }
-}
-
-impl Occupancy {
-    /// Returns the sample times, s, one more than there are steps.
-    #[must_use]
-    pub fn times(&self) -> &[f64] {
-        &self.times
-    }
-
-    /// Returns the number of steps.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.swept.len().checked_div(self.count).unwrap_or(0)
-    }
-
-    /// Returns whether there is no step.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.swept.is_empty()
-    }
-
-    /// Returns the capsules of step k, in the order of the body's.
-    #[must_use]
-    pub fn step(&self, k: usize) -> &[SweptCapsule] {
-        &self.swept[k * self.count..(k + 1) * self.count]
     }
 }

@@ -1,6 +1,6 @@
 //! Verdicts as text.
 
-use reachtube_finding::Table;
+use reachtube_finding::{Report, Section, Table};
 use reachtube_scalar::number::at_least;
 
 use crate::body::body::Body;
@@ -9,25 +9,31 @@ use crate::scene::scenario::Scene;
 use crate::verdict::clearance::Clearance;
 use crate::verdict::findings::{findings, worst_first};
 use crate::verdict::stop_verdict::lower;
-use crate::verdict::verification::{Answer, Verification};
+use crate::verdict::verification::Verification;
 
-/// Returns the verdicts as text: the worst first, a table of the motions, the margins, and what to
-/// do next.
+/// Number of undecided motions for which the report says what would decide; JSON has all.
+const MOST_ADVICE: usize = 3;
+
+/// Returns the verdicts as a report: the worst first and what would decide, then tables of the
+/// motions, of the stops and of the margins.
 #[must_use]
-pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> String {
+pub fn report(all: &[Verification], body: &Body, scene: &Scene) -> Report {
     let order = worst_first(all);
-    let findings = findings(all, body, scene);
-    let (verdict, advice) = findings.split_at(findings.len().min(1));
-    let mut lines: Vec<String> = verdict.iter().map(|finding| finding.text.clone()).collect();
-    lines.push(String::new());
-    lines.push(match order[..] {
-        [one] => links(one).to_string(),
-        _ => motions(&order).to_string(),
+    let mut findings = findings(all, body, scene);
+    findings.truncate(1 + MOST_ADVICE);
+    let closest = match order[..] {
+        [one] => links(one),
+        _ => motions(&order),
+    };
+    let section = |table: Table| Section { tables: vec![table], ..Section::default() };
+    let stops = triggers(all).map(|(table, words)| {
+        let mut stops = section(table);
+        stops.fact("standstill", words);
+        stops
     });
-    lines.extend(triggers(all).map(|(table, words)| format!("{table}{words}\n")));
-    lines.push(margins(all, body).to_string());
-    lines.extend(advice.iter().take(3).map(|finding| finding.text.clone()));
-    lines.join("\n").trim_end().to_string() + "\n"
+    let first = Section { findings, ..section(closest) };
+    let others = stops.into_iter().chain([section(margins(all, body))]);
+    Report { sections: [first].into_iter().chain(others).collect() }
 }
 
 /// Returns how close each link comes to its closest obstacle on one motion, as a table.
@@ -43,46 +49,22 @@ fn links(v: &Verification) -> Table {
         let time = format!("{:.3}", pair.time);
         vec![pair.link.clone(), pair.obstacle.clone(), distance(pair.distance), time]
     };
-    Table {
-        title: "the smallest proved distance of each link".into(),
-        ..Table::new(["link of", "obstacle", "distance [m]", "at [s]"], closest.map(row).collect())
-    }
-}
-
-/// Returns the verdict about the worst motion and what would decide as sentences, and tables of the
-/// motions with the worst first, of the stops and of the margins.
-#[must_use]
-pub fn summary(all: &[Verification], body: &Body, scene: &Scene) -> (Vec<String>, Vec<Table>) {
-    let order = worst_first(all);
-    let mut sentences: Vec<String> =
-        findings(all, body, scene).into_iter().map(|finding| finding.text).collect();
-    let stops = triggers(all).map(|(table, words)| {
-        sentences.push(words);
-        table
-    });
-    let first = Table { title: "motions, the worst first".into(), ..motions(&order) };
-    let tables = [first].into_iter().chain(stops).chain([margins(all, body)]);
-    let tables = tables.collect();
-    (sentences, tables)
+    Table::new(["link of", "obstacle", "distance [m]", "at [s]"], closest.map(row).collect())
+        .titled("the smallest proved distance of each link")
 }
 
 fn motions(order: &[&Verification]) -> Table {
     let header = ["motion", "answer", "closest link", "obstacle", "proved distance [m]", "at [s]"];
-    Table::new(header, order.iter().map(|v| row(v)).collect())
+    Table::new(header, order.iter().map(|v| row(v)).collect()).titled("motions, the worst first")
 }
 
 fn row(v: &Verification) -> Vec<String> {
-    let answer = match v.answer {
-        Answer::Safe => "safe",
-        Answer::Undecided => "undecided",
-        Answer::Unsafe => "unsafe",
-    };
     let motion = v.clearances.first().map(|p| (&p.link, &p.obstacle, p.distance, p.time));
     let stop = v.stops.iter().flat_map(|stops| stops.clearances.first());
     let stop = stop.map(|p| (&p.link, &p.obstacle, p.distance, p.from));
     // A stop counts from the sample at which it begins.
     let pair = motion.into_iter().chain(stop).min_by(|a, b| a.2.total_cmp(&b.2));
-    let mut row = vec![v.case.clone(), answer.into()];
+    let mut row = vec![v.case.clone(), v.answer.to_string()];
     match pair {
         None => row.extend(vec![String::new(); 4]),
         Some((link, obstacle, distance, time)) => row.extend([
@@ -114,8 +96,6 @@ fn margins(all: &[Verification], body: &Body) -> Table {
             time,
         ]);
     }
-    Table {
-        title: "margins: how far a link can be from its nominal motion".into(),
-        ..Table::new(["link of", "margin [m]", "motion", "at [s]"], rows)
-    }
+    Table::new(["link of", "margin [m]", "motion", "at [s]"], rows)
+        .titled("margins: how far a link can be from its nominal motion")
 }

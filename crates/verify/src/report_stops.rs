@@ -28,19 +28,14 @@ pub(crate) fn triggers(all: &[Verification]) -> Option<(Table, String)> {
         return None;
     }
     let header = ["link of", "trigger at [m]", "way [m]", "time [s]", "motion", "stop at [s]"];
-    let table = Table {
-        title: "stops: how far a person who walks must be when a stop is triggered".into(),
-        ..Table::new(header, links.into_iter().map(row).collect())
-    };
+    let table = Table::new(header, links.into_iter().map(row).collect())
+        .titled("stops: how far a person who walks must be when a stop is triggered");
     let count = |of: fn(&MotionStops) -> usize| stops.iter().map(|(_, stops)| of(stops)).sum();
     let (samples, proved): (usize, usize) = (count(|s| s.samples), count(|s| s.proved));
     let skipped: usize = count(|s| s.skipped);
-    let mut text =
-        format!("Standstill is proved for the stops from {proved} of {samples} samples.");
+    let mut text = format!("proved for the stops from {proved} of {samples} samples");
     if skipped > 0 {
-        text += &format!(
-            " Stops from {skipped} samples are not covered: they end after the motion does."
-        );
+        text += &format!("; {skipped} are not covered: their stops end after the motion does");
     }
     Some((table, text))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use reachtube::conform::settings::InitialLimit;
 use reachtube::conform::{Notion, Progress as ConformProgress};
-use reachtube::page::TextTable;
+use reachtube::finding::Table;
 use reachtube::reach::Disturbance;
 use reachtube::reproduce::{
     Claim, CoverageRow, Item, PaperFigure, ReproduceOptions, Reproduced, reproduce,
@@ -21,7 +21,6 @@ use crate::option_values::{Choices, DISTURBANCES, INITIAL_LIMITS, choice, trimme
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
-use crate::table::titled;
 
 /// Tables and figures, by their names.
 const ITEMS: Choices = &[
@@ -230,8 +229,8 @@ fn options(args: &Arguments) -> Result<ReproduceOptions> {
 
 /// Returns the tables, each after its words.
 fn sheets(computed: &Reproduced) -> String {
-    let text = |words: &[String], tables: &[TextTable]| {
-        let tables: Vec<String> = tables.iter().map(titled).collect();
+    let text = |words: &[String], tables: &[Table]| {
+        let tables: Vec<String> = tables.iter().map(Table::to_string).collect();
         format!("{}\n\n{}", words.join("\n"), tables.join("\n"))
     };
     let sheets = computed.sheets();
@@ -244,10 +243,8 @@ fn summary(claims: &[Claim], page: &Path) -> String {
         let holds = if claim.holds { "yes" } else { "NO" };
         vec![claim.place.clone(), claim.claim.clone(), claim.ours.clone(), holds.into()]
     };
-    let table = TextTable {
-        title: "The paper's experiment on a virtual robot".into(),
-        header: ["", "statement", "here", "holds"].map(String::from).to_vec(),
-        rows: claims.iter().map(row).collect(),
-    };
-    format!("{}\n{} has all tables and figures\n", titled(&table), page.display())
+    let rows = claims.iter().map(row).collect();
+    let table = Table::new(["", "statement", "here", "holds"], rows)
+        .titled("The paper's experiment on a virtual robot");
+    format!("{table}\n{} has all tables and figures\n", page.display())
 }

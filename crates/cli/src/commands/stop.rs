@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use reachtube::Keep;
-use reachtube::page::{STOP_PAGE_FILE, StopPage, write_stop_html};
+use reachtube::page::{STOP_PAGE_FILE, StopPage, stop_html};
 use reachtube::recordings::{DataSet, RunSource};
 use reachtube::robot::JointKind;
 use reachtube::verify::{Brakes, Category, StopQuestion, StopStudy, stop_study};
@@ -92,9 +92,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if let Some(path) = &page {
         let (model, brakes, study) = (&opened.model, &brakes, &study);
         let content = StopPage { robot, model, brakes, study, warnings };
-        let mut html = Vec::new();
-        write_stop_html(&content, &mut html)?;
-        write::atomically(path, |file| file.write_all(&html))?;
+        let html = stop_html(&content)?;
+        write::atomically(path, |file| file.write_all(html.as_bytes()))?;
         output::wrote(path);
     }
     let outcome = outcome(&study);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::conform::Opened;
-use reachtube::page::{VERIFY_PAGE_FILE, VerifyPage, write_verify_html};
+use reachtube::page::{VERIFY_PAGE_FILE, verify_files};
 use reachtube::pipeline::{ScenarioJob, Verified};
 use reachtube::verify::{Answer, Scenario};
 
@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&verified.to_json())?;
     } else {
-        output::print_verdict(&verified.report(), &outcome)?;
+        output::print_verdict(&verified.report().to_string(), &outcome)?;
     }
     // A file in the way must not cost the verdict.
     write_files(&args.out, &verified)?;
@@ -77,15 +77,9 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Writes the page, the pictures, and the closest motions of what is not safe.
 fn write_files(out: &Path, verified: &Verified) -> Result<()> {
-    let Verified { motions, body, scene, .. } = verified;
-    let mut html = Vec::new();
-    let warnings = &verified.warnings();
-    write_verify_html(&VerifyPage { all: motions, body, scene, warnings }, &mut html)?;
-    let page = (VERIFY_PAGE_FILE.into(), html);
-    let others = verified.files().into_iter().map(|(name, text)| (name, text.into_bytes()));
-    let files = [page].into_iter().chain(others).map(|(name, bytes)| (out.join(name), bytes));
-    let files: Vec<(PathBuf, Vec<u8>)> = files.collect();
-    output::write_all(files.iter().map(|(path, bytes)| (path, &**bytes)))?;
+    let files = verify_files(verified).into_iter().map(|(name, text)| (out.join(name), text));
+    let files: Vec<(PathBuf, String)> = files.collect();
+    output::write_all(files.iter().map(|(path, text)| (path, text.as_bytes())))?;
     let written: Vec<&Path> = files.iter().map(|(path, _)| &**path).collect();
     note_stale(out, &written);
     Ok(())

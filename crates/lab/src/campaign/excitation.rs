@@ -60,7 +60,6 @@ impl ExcitingMotion {
         (DURATION / SAMPLE_TIME).round() as usize + 1
     }
 
-    /// Returns the plan at time `t` \[s\].
     pub(super) fn at(&self, t: f64) -> Planned {
         let [w, rate, bend] = ramp(t);
         let (mut q, mut qd, mut qdd) = (Vec::new(), Vec::new(), Vec::new());

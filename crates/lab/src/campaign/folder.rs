@@ -9,11 +9,10 @@ use reachtube_robot::Robot;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
-use super::error::CampaignError;
 use super::job::Job;
 use super::options::{CampaignOptions, MARK};
 use super::readme::readme;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::virtual_robot::VirtualRobot;
 
 /// The index of the data set.
@@ -43,10 +42,10 @@ impl<'a> Folder<'a> {
         if path.exists() {
             let found = reachtube_files::read(&path, REMEDY)?;
             if found != mark.as_bytes() {
-                return Err(CampaignError::OtherCampaign { folder: root.into() }.into());
+                return Err(Error::OtherCampaign { folder: root.into() });
             }
         } else if !entries(root).is_empty() {
-            return Err(CampaignError::ForeignFolder { folder: root.into() }.into());
+            return Err(Error::ForeignFolder { folder: root.into() });
         }
         folder.write_new(MARK, &mark)?;
         folder.write_new("README.md", &readme(robot, options))?;
@@ -123,7 +122,6 @@ fn mark(robot: &Robot, options: &CampaignOptions) -> String {
     serde_json::to_string_pretty(&value).expect("options have string keys") + "\n"
 }
 
-/// Returns the paths in a folder; none if it does not exist.
 fn entries(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten();
     entries.flatten().map(|entry| entry.path()).collect()

@@ -2,11 +2,9 @@
 
 use super::excitation::ExcitingMotion;
 use super::motion_series::MotionSeries;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::motion::{Motion, Planned, SAMPLE_TIME};
-use crate::virtual_robot::{
-    Arm, Logged, PreRecorded, SuiteRuns, VirtualRobot, VirtualRobotError, record_suite,
-};
+use crate::virtual_robot::{Arm, Logged, PreRecorded, SuiteRuns, VirtualRobot, record_suite};
 
 /// One part of a campaign, which nothing else depends on.
 pub(super) struct Job {
@@ -62,7 +60,6 @@ impl Job {
         }
     }
 
-    /// Simulates the robot and returns the text of each file.
     pub(super) fn record(&self, robot: &VirtualRobot) -> Result<Vec<String>> {
         match &self.work {
             Work::Suite(_, motion, runs) => {
@@ -96,6 +93,6 @@ impl Job {
             return Ok(vec![recording.to_csv(SAMPLE_TIME, stride)]);
         }
         let (recording, robot) = (self.files[0].clone(), robot.nominal().name().into());
-        Err(VirtualRobotError::Diverged { recording, robot }.into())
+        Err(Error::Diverged { recording, robot })
     }
 }

@@ -14,7 +14,6 @@
 //! The files are independent of each other, so that all cores are used, and each is written whole.
 //! A campaign that was stopped continues where it ended, with the same bytes.
 
-pub(crate) mod error;
 mod excitation;
 mod folder;
 mod job;
@@ -26,7 +25,6 @@ mod record;
 #[cfg(test)]
 mod tests;
 
-pub use error::CampaignError;
 pub use options::CampaignOptions;
 pub(crate) use options::campaign_options;
 pub(crate) use plan::{PlannedSuite, planned_suites};

@@ -93,7 +93,6 @@ impl MotionSeries {
         self.0.iter().map(|(motion, rest)| motion.cycles() + rest).sum()
     }
 
-    /// Returns the plan at cycle `k`.
     pub(super) fn at(&self, mut k: usize) -> Planned {
         for (motion, rest) in &self.0 {
             if k < motion.cycles() + rest {
@@ -105,7 +104,6 @@ impl MotionSeries {
     }
 }
 
-/// Returns the number of cycles in a time \[s\].
 fn cycles(time: f64) -> usize {
     (time / SAMPLE_TIME).round() as usize
 }

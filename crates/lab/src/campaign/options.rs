@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::error::CampaignError;
+use crate::error::{Error, Result};
 use crate::virtual_robot::VirtualRobotParameters;
 
 /// The file that marks the folder of a campaign and holds its options.
@@ -90,7 +90,7 @@ impl CampaignOptions {
         [self.rest, self.one_joint, self.excitation, self.validation] == [0; 4]
     }
 
-    pub(super) fn validate(&self) -> Result<(), CampaignError> {
+    pub(super) fn validate(&self) -> Result<()> {
         let count = |name, given: usize, least: f64| (name, given as f64, [least, MOST]);
         for (name, given, [least, most]) in [
             count("motions", self.motions, 1.0),
@@ -104,13 +104,13 @@ impl CampaignOptions {
             ("duration of a motion in s", self.duration.unwrap_or(1.0), [0.5, 60.0]),
         ] {
             if !(least..=most).contains(&given) {
-                return Err(CampaignError::Range { name, given, least, most });
+                return Err(Error::Range { name, given, least, most });
             }
         }
         let (motions, held_out) =
             (self.motions, self.held_out_motions.saturating_add(self.calibration_motions));
         if motions <= held_out {
-            return Err(CampaignError::NoTrainingMotion { motions, held_out });
+            return Err(Error::NoTrainingMotion { motions, held_out });
         }
         Ok(())
     }
@@ -120,13 +120,13 @@ impl CampaignOptions {
 ///
 /// # Errors
 ///
-/// [`CampaignError::NotACampaign`] if the folder has no options of a campaign.
-pub(crate) fn campaign_options(folder: &Path) -> Result<CampaignOptions, CampaignError> {
+/// [`Error::NotACampaign`](crate::Error::NotACampaign) if the folder has no options of a campaign.
+pub(crate) fn campaign_options(folder: &Path) -> Result<CampaignOptions> {
     #[derive(Deserialize)]
     struct Mark {
         options: CampaignOptions,
     }
-    let not = || CampaignError::NotACampaign { folder: folder.into() };
+    let not = || Error::NotACampaign { folder: folder.into() };
     let text = std::fs::read(folder.join(MARK)).map_err(|_| not())?;
     let Mark { options } = serde_json::from_slice(&text).map_err(|_| not())?;
     options.validate()?;

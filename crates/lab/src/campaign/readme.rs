@@ -5,7 +5,6 @@ use serde_json::Value;
 use super::options::{CampaignOptions, MARK};
 use crate::virtual_robot::VirtualRobot;
 
-/// Returns the README: what each file is, and what to type.
 pub(super) fn readme(robot: &VirtualRobot, options: &CampaignOptions) -> String {
     let name = robot.nominal().name();
     format!(

@@ -51,9 +51,9 @@ pub struct RecordedCampaign {
 ///
 /// # Errors
 ///
-/// - [`CampaignError`](super::CampaignError) for options out of range, and for a folder with files
+/// - [`Error`](crate::Error) for options out of range, and for a folder with files
 ///   that this campaign has not written.
-/// - [`VirtualRobotError`](crate::virtual_robot::VirtualRobotError) for parameters out of range,
+/// - [`Error`](crate::Error) for parameters out of range,
 ///   and where the simulation diverges.
 ///
 /// # Examples

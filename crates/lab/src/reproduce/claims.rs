@@ -72,7 +72,6 @@ const TRAJECTORIES: &str = "The paper's two trajectories are unpublished. Ours a
                             limit at once.";
 
 impl Table1 {
-    /// Lays what the paper concludes from Table I beside ours.
     pub(super) fn claims(&self) -> Vec<Claim> {
         let mean = |kind, order, speed| self.cell(kind, order, speed).and_then(|cell| cell.mean);
         let words = |values: &[Option<f64>]| {
@@ -176,7 +175,6 @@ impl Table1 {
 type Widths = Vec<(f64, f64)>;
 
 impl Table2 {
-    /// Lays what the paper concludes from Table II beside ours, by the cases in the notion `hull`.
     pub(super) fn claims(&self) -> Vec<Claim> {
         let of = |states: States| {
             self.cases.iter().find(|case| (case.notion, case.states) == (Notion::Hull, states))
@@ -266,7 +264,6 @@ fn alike(widths: &Widths) -> usize {
 }
 
 impl Exemplary {
-    /// Lays what the paper concludes from Fig. 4 beside ours.
     pub(super) fn claims(&self) -> Vec<Claim> {
         let n = self.joints();
         let narrower = (0..n).filter(|joint| {
@@ -298,7 +295,6 @@ impl Exemplary {
 }
 
 impl Table3 {
-    /// Lays the identified model beside the arm that moved.
     pub(super) fn claims(&self) -> Vec<Claim> {
         let deviations = |is_biased: bool| -> Vec<f64> {
             let of = |row: &&Table3Row| row.effects.is_empty() != is_biased;
@@ -336,7 +332,6 @@ impl Table3 {
 }
 
 impl Coverage {
-    /// Lays the bounds beside how often they were wrong.
     pub(super) fn claims(&self) -> Vec<Claim> {
         let claim = |row: &CoverageRow| {
             Claim::new(

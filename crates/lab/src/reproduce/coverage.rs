@@ -12,9 +12,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::chosen_model::{self, Choice};
-use super::error::ReproduceError;
 use super::virtual_motions::{problem, truth, virtual_motions};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::random::{SeedableRng, SplitMix64};
 use crate::virtual_robot::{VirtualRobot, VirtualRobotParameters};
 
@@ -116,7 +115,7 @@ type Campaign = (Stated, Vec<(f64, f64)>);
 ///
 /// # Errors
 ///
-/// Fails with [`ReproduceError::NoCampaigns`] if there are none, and as
+/// Fails with [`Error::NoCampaigns`](crate::Error::NoCampaigns) if there are none, and as
 /// [`conform`](reachtube_conform::conform).
 ///
 /// # Examples
@@ -135,7 +134,7 @@ pub fn coverage(
 ) -> Result<Coverage> {
     let total = options.campaigns;
     if total == 0 || options.next == 0 {
-        return Err(ReproduceError::NoCampaigns.into());
+        return Err(Error::NoCampaigns);
     }
     let robot = VirtualRobot::new(&Robot::lwa4p(), VirtualRobotParameters::default())?;
     let mut random = SplitMix64::seed_from_u64(options.seed);

@@ -9,9 +9,8 @@ use reachtube_conform::{
 use reachtube_finding::FrontEnd;
 use reachtube_recordings::DataSet;
 
-use super::error::ReproduceError;
 use super::table2::Found;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use reachtube_page::{Sources, SuiteFigure, suite_figures};
 
 /// One suite with its recordings, its input, and the reachable sets of both cases of Table II.
@@ -32,11 +31,11 @@ impl Exemplary {
     ///
     /// # Errors
     ///
-    /// [`ReproduceError::NoSuite`]; as [`Problem::read`] and [`reach`].
+    /// [`Error::NoSuite`](crate::Error::NoSuite); as [`Problem::read`] and [`reach`].
     pub(super) fn new(folder: &Path, found: &Found, suite: Option<&str>) -> Result<Self> {
         let name = match suite {
             Some(name) => name.to_string(),
-            None => furthest_apart(&found.problem).ok_or(ReproduceError::NoSuite)?,
+            None => furthest_apart(&found.problem).ok_or(Error::NoSuite)?,
         };
         let of_case = |states: States| {
             let case = found.cases.iter().find(|case| case.states() == states);
@@ -60,7 +59,6 @@ impl Exemplary {
         self.figure.joints.len()
     }
 
-    /// Returns the joint (from 0) whose position spreads furthest over the runs.
     pub(crate) fn widest_joint(&self) -> usize {
         let wider = |a: &usize, b: &usize| self.spread(*a).total_cmp(&self.spread(*b));
         (0..self.joints()).max_by(wider).unwrap_or(0)
@@ -131,7 +129,7 @@ fn suite_under(
         front_end: FrontEnd::CommandLine,
     })?
     .pop();
-    let figure = figure.ok_or(ReproduceError::NoSuite)?;
+    let figure = figure.ok_or(Error::NoSuite)?;
     let first = problem.recordings().suites[0].runs[0].index;
     let run = problem.run(first)?;
     let inputs = (0..run.len()).flat_map(|k| run.torque(k).to_vec()).collect();

@@ -8,13 +8,13 @@ use reachtube_robot::JointKind;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::error::ReproduceError;
 use super::exemplary::Exemplary;
 use crate::campaign::{PlannedSuite, planned_suites};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::motion::{Motion, SAMPLE_TIME};
+use reachtube_finding::Table;
 use reachtube_page::{
-    Chart, Series, SuiteFigure, TextTable, View, charts_svg, load_chart, suite_svg, viscous_chart,
+    Area, Chart, Series, SuiteFigure, View, charts_svg, friction_charts, suite_svg,
 };
 use reachtube_scalar::number::significant;
 
@@ -35,7 +35,7 @@ pub struct PaperFigure {
     /// What the paper's shows.
     pub paper: String,
     /// Its numbers.
-    pub table: TextTable,
+    pub table: Table,
     /// The drawing, a complete SVG document.
     #[serde(skip)]
     pub svg: String,
@@ -74,8 +74,13 @@ pub(super) fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
     let position = "position [rad]";
     let model = in_set(suite, joint, "model: its reachable set", position);
     let charts = [
-        chart("input u of all runs", "torque [N m]", vec![line(times, &inputs, PLANNED)]),
-        chart("robot: its recordings", position, model.series.clone()),
+        Chart::new(
+            "input u of all runs",
+            "time [s]",
+            "torque [N m]",
+            vec![line(times, &inputs, PLANNED)],
+        ),
+        Chart::new("robot: its recordings", "time [s]", position, model.series.clone()),
         model,
     ];
     let caption = format!(
@@ -95,25 +100,18 @@ pub(super) fn fig2(suite: &Exemplary) -> Result<PaperFigure> {
     })
 }
 
-fn chart(title: &str, y: &str, series: Vec<Series>) -> Chart {
-    let (title, x, y) = (title.into(), "time [s]".into(), y.into());
-    Chart { title, x, y, area: Vec::new(), series }
-}
-
 fn line(times: &[f64], values: &[f64], colour: [u8; 3]) -> Series {
-    let points = times.iter().copied().zip(values.iter().copied()).collect();
-    Series { points, dots: false, colour }
+    Series::line(times.iter().copied().zip(values.iter().copied()).collect(), colour)
 }
 
 /// Returns a state of all runs over time in its reachable set.
 fn in_set(suite: &Exemplary, state: usize, title: &str, y: &str) -> Chart {
     let SuiteFigure { times, band, runs, .. } = &suite.figure;
-    // The set's upper edge forward in time, then its lower edge back.
-    let edge = |edge: &[f64]| times.iter().copied().zip(edge.to_vec()).collect::<Vec<_>>();
-    let (upper, lower) = (edge(&band.upper[state]), edge(&band.lower[state]));
-    let area = upper.into_iter().chain(lower.into_iter().rev()).collect();
+    let [lower, upper] = [&band.lower, &band.upper]
+        .map(|edge| times.iter().copied().zip(edge[state].iter().copied()).collect());
     let runs = runs.iter().map(|run| line(&run.times, &run.states[state], RECORDED));
-    Chart { area, ..chart(title, y, runs.collect()) }
+    let areas = vec![Area { lower, upper }];
+    Chart { areas, ..Chart::new(title, "time [s]", y, runs.collect()) }
 }
 
 /// Draws Fig. 3: the points of the motion of `suite` at which the controller switches to open loop,
@@ -121,12 +119,12 @@ fn in_set(suite: &Exemplary, state: usize, title: &str, y: &str) -> Chart {
 ///
 /// # Errors
 ///
-/// [`CampaignError`](crate::campaign::CampaignError) for a folder that is not a campaign's;
-/// [`ReproduceError::UnknownSuite`]; as [`suite_svg`].
+/// [`Error`](crate::Error) for a folder that is not a campaign's;
+/// [`Error::UnknownSuite`](crate::Error::UnknownSuite); as [`suite_svg`].
 pub(super) fn fig3(campaign: &Path, suite: &str) -> Result<PaperFigure> {
     let planned = planned_suites(campaign)?;
     let of_suite = planned.iter().find(|plan| plan.name == suite);
-    let of_suite = of_suite.ok_or_else(|| ReproduceError::UnknownSuite { suite: suite.into() })?;
+    let of_suite = of_suite.ok_or_else(|| Error::UnknownSuite { suite: suite.into() })?;
     let motion = &of_suite.motion;
     let same = planned.iter().filter(|plan| plan.motion_name == of_suite.motion_name);
     let data = DataSet::open(campaign)?;
@@ -156,11 +154,8 @@ pub(super) fn fig3(campaign: &Path, suite: &str) -> Result<PaperFigure> {
     Ok(PaperFigure {
         number: 3,
         paper: "The paper shows one motion with four points, and neither times nor scales.".into(),
-        table: TextTable {
-            title: "Where the open loop begins".into(),
-            header: header.map(String::from).to_vec(),
-            rows: starts.iter().map(row).collect(),
-        },
+        table: Table::new(header, starts.iter().map(row).collect())
+            .titled("Where the open loop begins"),
         svg: charts_svg(&charts, 3, &caption)?,
         caption,
     })
@@ -191,7 +186,7 @@ impl OpenLoop {
 fn planned_chart(motion: &Motion, starts: &[OpenLoop], joint: usize) -> Chart {
     let run = |run: &Run, start: f64| {
         let point = |k: usize| (start + run.times[k], run.q(k)[joint]);
-        Series { points: (0..run.len()).map(point).collect(), dots: false, colour: RECORDED }
+        Series::line((0..run.len()).map(point).collect(), RECORDED)
     };
     let mut series: Vec<Series> = starts
         .iter()
@@ -201,11 +196,11 @@ fn planned_chart(motion: &Motion, starts: &[OpenLoop], joint: usize) -> Chart {
         let t = k as f64 * SAMPLE_TIME;
         (t, motion.at(t).q[joint])
     });
-    series.push(Series { points: plan.collect(), dots: false, colour: PLANNED });
+    series.push(Series::line(plan.collect(), PLANNED));
     let heights = || series.iter().flat_map(|series| &series.points).map(|point| point.1);
     let ends = [heights().fold(f64::INFINITY, f64::min), heights().fold(f64::MIN, f64::max)];
     series.extend(starts.iter().flat_map(|open| dashed(open.start, ends)));
-    chart(&format!("joint{}", joint + 1), "position [rad]", series)
+    Chart::new(format!("joint{}", joint + 1), "time [s]", "position [rad]", series)
 }
 
 /// Draws Fig. 4: the reachable sets of both cases with all recordings of a suite.
@@ -247,8 +242,8 @@ pub(super) fn fig5(found: &Identification) -> Result<PaperFigure> {
     // The charts of three joints in a row, viscous friction below Coulomb friction.
     let mut charts = Vec::new();
     for row in fits.chunks(3) {
-        charts.extend(row.iter().map(|(fit, kind)| load_chart(fit, *kind)));
-        charts.extend(row.iter().map(|(fit, kind)| viscous_chart(fit, *kind)));
+        let row: Vec<_> = row.iter().map(|(fit, kind)| friction_charts(fit, *kind)).collect();
+        charts.extend([0, 1].into_iter().flat_map(|k| row.iter().map(move |two| two[k].clone())));
     }
     let row = |(fit, _): &(&FrictionFit, JointKind)| {
         let squares: f64 = fit.residuals.iter().map(|residual| residual * residual).sum();
@@ -264,28 +259,23 @@ pub(super) fn fig5(found: &Identification) -> Result<PaperFigure> {
         paper: "The paper shows joint 2. Its Coulomb friction runs from 4 to 10 N m over loads of \
                 both signs, and its viscous friction bends down toward high speeds."
             .into(),
-        table: TextTable {
-            title: "What the fits leave".into(),
-            header: header.map(String::from).to_vec(),
-            rows: fits.iter().map(row).collect(),
-        },
+        table: Table::new(header, fits.iter().map(row).collect()).titled("What the fits leave"),
         svg: charts_svg(&charts, 3, &caption)?,
         caption,
     })
 }
 
-/// Returns a dashed vertical line at `x` between two heights.
 fn dashed(x: f64, [low, high]: [f64; 2]) -> impl Iterator<Item = Series> {
     const DASHES: usize = 25;
     let height = move |part: f64| low + (high - low) * part / DASHES as f64;
     (0..DASHES).map(move |k| {
         let k = k as f64;
-        Series { points: vec![(x, height(k)), (x, height(k + 0.5))], dots: false, colour: SET }
+        Series::line(vec![(x, height(k)), (x, height(k + 0.5))], SET)
     })
 }
 
 /// Returns how far the runs spread and how wide the reachable sets are, for some joints.
-fn widths(suite: &Exemplary, joints: std::ops::Range<usize>) -> TextTable {
+fn widths(suite: &Exemplary, joints: std::ops::Range<usize>) -> Table {
     let n = suite.joints();
     let digits = |value: f64| significant(value, 3);
     let row = |joint: usize| {
@@ -304,12 +294,8 @@ fn widths(suite: &Exemplary, joints: std::ops::Range<usize>) -> TextTable {
         "set (q, qd) [rad/s]",
         "set (q) [rad/s]",
     ];
-    TextTable {
-        title: format!(
-            "Largest spread of the runs of suite {}, and largest width of its reachable sets",
-            suite.figure.suite
-        ),
-        header: header.map(String::from).to_vec(),
-        rows: joints.map(row).collect(),
-    }
+    Table::new(header, joints.map(row).collect()).titled(format!(
+        "Largest spread of the runs of suite {}, and largest width of its reachable sets",
+        suite.figure.suite
+    ))
 }

@@ -2,7 +2,7 @@
 
 use reachtube_robot::{Joint, Robot};
 
-use super::error::ReproduceError;
+use crate::error::{Error, Result};
 use crate::motion::{Motion, QUINTIC_PEAK};
 use crate::random::{SplitMix64, sign, uniform};
 
@@ -30,12 +30,12 @@ struct Axis {
 ///
 /// # Errors
 ///
-/// Fails with [`ReproduceError::NoRange`] if a joint has no such position.
+/// Fails with [`Error::NoRange`](crate::Error::NoRange) if a joint has no such position.
 pub(super) fn full_speed_motion(
     robot: &Robot,
     range: f64,
     random: &mut SplitMix64,
-) -> Result<Motion, ReproduceError> {
+) -> Result<Motion> {
     let axes = robot.joints().iter().map(|joint| axis(joint, range));
     let axes: Vec<Axis> = axes.collect::<Result<_, _>>()?;
     // All joints share the duration that the joint with the least range allows.
@@ -50,13 +50,13 @@ pub(super) fn full_speed_motion(
     Ok(Motion { start, travel, duration })
 }
 
-fn axis(joint: &Joint, range: f64) -> Result<Axis, ReproduceError> {
+fn axis(joint: &Joint, range: f64) -> Result<Axis> {
     let limits = joint.position_limits;
     let [low, high] = [limits[0].max(-range), limits[1].min(range)];
     if low < high {
         return Ok(Axis { low, high, speed: joint.velocity_limit.unwrap_or(USUAL_SPEED) });
     }
-    Err(ReproduceError::NoRange { joint: joint.name.clone(), range, limits })
+    Err(Error::NoRange { joint: joint.name.clone(), range, limits })
 }
 
 #[cfg(test)]

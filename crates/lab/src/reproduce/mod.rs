@@ -3,7 +3,6 @@
 mod chosen_model;
 mod claims;
 mod coverage;
-pub(crate) mod error;
 mod exemplary;
 mod figures;
 mod full_speed_motion;
@@ -19,7 +18,6 @@ mod virtual_motions;
 
 pub use claims::Claim;
 pub use coverage::{Coverage, CoverageOptions, CoverageRow, coverage};
-pub use error::ReproduceError;
 pub use figures::PaperFigure;
 pub use paper::{Paper, Speed};
 pub use reproduced::{Item, ReproduceOptions, Reproduced, reproduce};

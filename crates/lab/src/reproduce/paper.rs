@@ -26,7 +26,6 @@ impl Speed {
         }
     }
 
-    /// Returns `slow` or `fast`.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Slow => "slow",

@@ -10,7 +10,8 @@ use super::table2::Table2;
 use super::table3::Table3;
 use crate::campaign::CampaignOptions;
 use reachtube_files::TOOL;
-use reachtube_page::{Error, TextTable, charts_svg, document, long_table, section};
+use reachtube_finding::Table;
+use reachtube_page::{Error, charts_svg, document, fact_table, section, table};
 
 /// The contents of the page.
 struct PaperPage<'a> {
@@ -66,13 +67,9 @@ impl PaperPage<'_> {
                 .map(String::from)
                 .to_vec()
         };
-        let table = TextTable {
-            title: format!("{hold} of {} statements hold here", claims.len()),
-            header: ["", "holds", "statement", "counts as holding", "here", "paper"]
-                .map(String::from)
-                .to_vec(),
-            rows: claims.iter().map(row).collect(),
-        };
+        let header = ["", "holds", "statement", "counts as holding", "here", "paper"];
+        let statements = Table::new(header, claims.iter().map(row).collect())
+            .titled(format!("{hold} of {} statements hold here", claims.len()));
         let others = || claims.iter().filter(|claim| !claim.holds && !claim.why.is_empty());
         html! {
             p {
@@ -91,7 +88,7 @@ impl PaperPage<'_> {
                  suites do. Agreement in these sizes is therefore no evidence. The other \
                  parameters are typical of such arms (docs/paper.md)."
             }
-            (long_table(&table))
+            (table("long", &statements))
             @for claim in others() {
                 p { b { (claim.place) ": " (claim.claim) "." } " Not here. " (claim.why) }
             }
@@ -105,13 +102,10 @@ impl PaperPage<'_> {
                  articulated bodies) move under the same inputs. A model whose state leaves \
                  100 rad or rad/s has diverged (\u{221e})."
             }
-            (long_table(&TextTable {
-                title: format!(
-                    "Table I: simulation error of the model abstractions. {}",
-                    self.table1.table().title
-                ),
-                ..self.table1.table()
-            }))
+            (captioned(
+                "Table I: simulation error of the model abstractions. ",
+                self.table1.table(),
+            ))
             p {
                 "Fast errors are larger than the paper's because every joint reaches its speed \
                  limit at once. Far from the expansion point every polynomial about it loses."
@@ -138,10 +132,7 @@ impl PaperPage<'_> {
                  set itself."
             }
             @for case in cases {
-                (long_table(&TextTable {
-                    title: format!("Table II, {}", case.table().title),
-                    ..case.table()
-                }))
+                (captioned("Table II, ", case.table()))
                 @if !case.warnings.is_empty() {
                     p.hint { "Warnings: " (sentences(&case.warnings)) }
                 }
@@ -160,9 +151,8 @@ impl PaperPage<'_> {
         else {
             return Markup::default();
         };
-        let is_same = |other: &TextTable| {
-            other.title == figure.table.title && other.rows == figure.table.rows
-        };
+        let is_same =
+            |other: &Table| other.title == figure.table.title && other.rows == figure.table.rows;
         let mut before = self.computed.figures.iter().filter(|other| other.number < number);
         let is_known = before.any(|other| is_same(&other.table));
         html! {
@@ -170,7 +160,7 @@ impl PaperPage<'_> {
                 (wide_figure(&format!("Fig. {number}"), &figure.svg))
                 figcaption { b { "Fig. " (number) ". " } (figure.caption) " " (figure.paper) }
             }
-            @if !is_known { (long_table(&figure.table)) }
+            @if !is_known { (table("long", &figure.table)) }
         }
     }
 
@@ -184,7 +174,7 @@ impl PaperPage<'_> {
                 (self.coverage.motions) " independent motions put them to the test: each bound may \
                  be wrong in 5 % of the campaigns."
             }
-            (long_table(&self.coverage.table()))
+            (table("long", &self.coverage.table()))
             (wide_figure("Stated and true probabilities", &svg))
             p.hint { "Each dot is a campaign. Its bound is wrong where the dot is above the line." }
         })
@@ -205,7 +195,7 @@ impl PaperPage<'_> {
                  moves are named. The arm of this page is not the paper\u{2019}s: its links are \
                  heavier, and it carries a payload."
             }
-            @for part in self.table3.tables() { (long_table(&part)) }
+            @for part in self.table3.tables() { (table("long", &part)) }
             @if !self.table3.warnings.is_empty() {
                 p.hint { "Warnings: " (sentences(&self.table3.warnings)) }
             }
@@ -227,15 +217,13 @@ impl PaperPage<'_> {
             facts.push(("Campaign", sizes));
             facts.push(("Virtual robot (docs/paper.md)", parameters.join(", ")));
         }
-        let row = |(name, value): (&str, String)| vec![name.to_string(), value];
-        html! {
-            (long_table(&TextTable {
-                title: "Settings".into(),
-                header: vec!["".into(), "".into()],
-                rows: facts.into_iter().map(row).collect(),
-            }))
-        }
+        fact_table(&facts)
     }
+}
+
+fn captioned(number: &str, of: Table) -> Markup {
+    let title = format!("{number}{}", of.title);
+    table("long", &of.titled(title))
 }
 
 fn wide_figure(label: &str, svg: &str) -> Markup {

@@ -133,11 +133,9 @@ pub struct Reproduced {
 ///
 /// # Errors
 ///
-/// - [`CampaignError`](crate::campaign::CampaignError) if Fig. 3, Fig. 5 or Table III is requested
-///   and the folder is not a campaign's.
-/// - [`ReproduceError`](super::ReproduceError) for sizes that compute nothing, and suites that are
-///   not there.
-/// - As [`conform`](reachtube_conform::conform) and [`identify`](reachtube_identify::identify).
+/// Fails if the folder is not a campaign's and Fig. 3, Fig. 5 or Table III is requested, for sizes
+/// that compute nothing, and for suites that are not there. Fails as
+/// [`conform`](reachtube_conform::conform) and [`identify`](reachtube_identify::identify).
 pub fn reproduce(
     items: &[Item],
     options: &ReproduceOptions,

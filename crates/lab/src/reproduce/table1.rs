@@ -9,11 +9,10 @@ use reachtube_robot::Robot;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::error::ReproduceError;
 use super::full_speed_motion::full_speed_motion;
 use super::paper::{Paper, Speed};
 use super::trajectories::{BLOCK, Trajectories};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::motion::Motion;
 use crate::random::{SeedableRng, SplitMix64};
 
@@ -88,7 +87,7 @@ pub struct Table1 {
 ///
 /// # Errors
 ///
-/// Fails with [`ReproduceError`] if there are no motions or no orders, or a joint cannot move
+/// Fails with [`Error`](crate::Error) if there are no motions or no orders, or a joint cannot move
 /// within the range. Fails also for orders that [`PolynomialModel::new`] refuses.
 ///
 /// # Examples
@@ -108,7 +107,7 @@ pub fn table1(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Table1> {
     if options.motions == 0 || options.orders.is_empty() {
-        return Err(ReproduceError::NothingToSimulate.into());
+        return Err(Error::NothingToSimulate);
     }
     // Random motions.
     let mut random = SplitMix64::seed_from_u64(options.seed);
@@ -150,7 +149,6 @@ impl RobotMotions {
     }
 }
 
-/// Returns the error of each motion \[rad/s\], model by model, at each speed in turn.
 fn errors(
     models: &[PolynomialModel],
     speeds: &[RobotMotions; 2],

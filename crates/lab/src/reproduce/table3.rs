@@ -8,10 +8,9 @@ use reachtube_robot::{BaseParameters, Parameter, ParameterKind, Robot};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::error::ReproduceError;
 use super::figures::{PaperFigure, fig5};
 use crate::campaign::campaign_options;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::virtual_robot::VirtualRobotParameters;
 
 /// A value that is 0 but for rounding.
@@ -94,7 +93,7 @@ impl Table3 {
 ///
 /// # Errors
 ///
-/// [`CampaignError`](crate::campaign::CampaignError) and [`ReproduceError`] if the folder is not a
+/// [`Error`](crate::Error) and [`Error`](crate::Error) if the folder is not a
 /// campaign of the LWA 4P; as [`identify`]; numbers that cannot be drawn.
 pub(super) fn table3_and_fig5(
     folder: &Path,
@@ -104,11 +103,7 @@ pub(super) fn table3_and_fig5(
     let arm = campaign_options(folder)?.robot;
     let truth = Robot::load(&folder.join("truth.toml").display().to_string())?;
     if truth.name() != robot.name() {
-        return Err(ReproduceError::OtherRobot {
-            folder: folder.into(),
-            robot: truth.name().into(),
-        }
-        .into());
+        return Err(Error::OtherRobot { folder: folder.into(), robot: truth.name().into() });
     }
     let found = identify(&robot, &settings(folder), folder, progress)?;
     let mut rows = friction(&found, [&robot, &truth], &arm);

@@ -10,7 +10,8 @@ use super::paper::{Paper, Speed};
 use super::table1::{Cell, Table1};
 use super::table2::{Table2, Table2Case};
 use super::table3::{Effect, Part, Table3, Table3Row};
-use reachtube_page::{Chart, Series, TextTable};
+use reachtube_finding::Table;
+use reachtube_page::{Chart, Series};
 use reachtube_scalar::number::{four_decimals, interval, significant};
 
 /// Blue, of single campaigns.
@@ -27,7 +28,7 @@ pub struct Sheet {
     /// Sentences about it, one per line.
     pub words: Vec<String>,
     /// Its numbers.
-    pub tables: Vec<TextTable>,
+    pub tables: Vec<Table>,
 }
 
 impl Table1 {
@@ -47,23 +48,19 @@ impl Table1 {
         Sheet { words, tables: vec![self.table()] }
     }
 
-    pub(super) fn table(&self) -> TextTable {
+    pub(super) fn table(&self) -> Table {
         let rows = self.options.orders.iter();
         let rows = rows.flat_map(|order| Speed::ALL.map(|speed| self.row(*order, speed)));
         let header = ["p", "speed", "model 1", "paper", "model 2", "paper", "model 3", "paper"];
         let (options, [slow, fast]) = (&self.options, self.durations);
-        TextTable {
-            title: format!(
-                "Mean |velocity error| over time and joints [rad/s], mean ± standard deviation \
+        Table::new(header, rows.collect()).titled(format!(
+            "Mean |velocity error| over time and joints [rad/s], mean ± standard deviation \
                  over {} random point-to-point motions (seed {}) within {} rad of 0, of {slow:.2} \
                  s (slow) and {fast:.2} s (fast)",
-                options.motions,
-                options.seed,
-                four_decimals(options.range)
-            ),
-            header: header.map(String::from).to_vec(),
-            rows: rows.collect(),
-        }
+            options.motions,
+            options.seed,
+            four_decimals(options.range)
+        ))
     }
 
     fn row(&self, order: u32, speed: Speed) -> Vec<String> {
@@ -107,8 +104,7 @@ impl Table2 {
 }
 
 impl Table2Case {
-    /// Returns the half of the table, with the paper's bounds beside ours.
-    pub(super) fn table(&self) -> TextTable {
+    pub(super) fn table(&self) -> Table {
         let row = |joint: usize| {
             let papers = [self.paper.x0_q, self.paper.x0_qd, self.paper.u].map(|sets| sets[joint]);
             let pairs = self.bounds(joint).into_iter().zip(papers);
@@ -124,16 +120,12 @@ impl Table2Case {
             Disturbance::Measurable => "measurable disturbance",
         };
         let proved = if self.conformant { "proved" } else { "NOT PROVED" };
-        TextTable {
-            title: format!(
-                "{}, {notion}, {disturbance}: {proved}, cost {} ({} summed over samples)",
-                self.name(),
-                four_decimals(self.cost),
-                four_decimals(self.cost_of_samples)
-            ),
-            header: header.map(String::from).to_vec(),
-            rows: (0..6).map(row).collect(),
-        }
+        Table::new(header, (0..6).map(row).collect()).titled(format!(
+            "{}, {notion}, {disturbance}: {proved}, cost {} ({} summed over samples)",
+            self.name(),
+            four_decimals(self.cost),
+            four_decimals(self.cost_of_samples)
+        ))
     }
 }
 
@@ -151,8 +143,7 @@ impl Table3 {
         }
     }
 
-    /// Returns the three parts of the table: friction, gravity, inertial parameters.
-    pub(super) fn tables(&self) -> [TextTable; 3] {
+    pub(super) fn tables(&self) -> [Table; 3] {
         let parts = [
             (Part::Friction, "friction parameters"),
             (Part::Gravity, "gravity model"),
@@ -167,10 +158,9 @@ impl Table3 {
             "paper",
             "biased by",
         ];
-        parts.map(|(part, name)| TextTable {
-            title: format!("Table III, {name} (SI units)"),
-            header: header.map(String::from).to_vec(),
-            rows: self.part(part).map(Table3Row::cells).collect(),
+        parts.map(|(part, name)| {
+            Table::new(header, self.part(part).map(Table3Row::cells).collect())
+                .titled(format!("Table III, {name} (SI units)"))
         })
     }
 }
@@ -218,8 +208,7 @@ impl Coverage {
         Sheet { words: vec![words], tables: vec![self.table()] }
     }
 
-    /// Returns the table: how often each statement was wrong, beside how often it may be.
-    pub(super) fn table(&self) -> TextTable {
+    pub(super) fn table(&self) -> Table {
         let row = |row: &CoverageRow| {
             vec![
                 row.statement.clone(),
@@ -235,15 +224,11 @@ impl Coverage {
         };
         let header =
             ["statement", "mean bound", "mean truth", "may be wrong", "was wrong", "holds"];
-        TextTable {
-            title: format!(
-                "{} campaigns of {} random motions: the stated probability that the next motion \
+        Table::new(header, self.rows.iter().map(row).collect()).titled(format!(
+            "{} campaigns of {} random motions: the stated probability that the next motion \
                  leaves the sets, and the part of {} further motions that leave them",
-                self.options.campaigns, self.motions, self.options.next
-            ),
-            header: header.map(String::from).to_vec(),
-            rows: self.rows.iter().map(row).collect(),
-        }
+            self.options.campaigns, self.motions, self.options.next
+        ))
     }
 
     /// Returns a chart for each statement at confidence: one dot per campaign, its true probability
@@ -253,20 +238,12 @@ impl Coverage {
         let chart = |row: &CoverageRow| {
             let all = row.campaigns.iter().flat_map(|(bound, truth)| [*bound, *truth]);
             let end = all.fold(0.0, f64::max);
-            let line = Series { points: vec![(0.0, 0.0), (end, end)], dots: false, colour: EQUAL };
-            let dots = Series { points: row.campaigns.clone(), dots: true, colour: CAMPAIGN };
+            let line = Series::line(vec![(0.0, 0.0), (end, end)], EQUAL);
+            let dots = Series::dots(row.campaigns.clone(), CAMPAIGN);
             let name = row.statement.split(',').next().unwrap_or_default();
-            Chart {
-                title: format!(
-                    "{name}: wrong in {:.1} %, may be in {:.0} %",
-                    100.0 * row.observed,
-                    100.0 * row.nominal
-                ),
-                x: "stated probability".into(),
-                y: "true probability".into(),
-                area: Vec::new(),
-                series: vec![line, dots],
-            }
+            let [observed, nominal] = [row.observed, row.nominal].map(|part| 100.0 * part);
+            let title = format!("{name}: wrong in {observed:.1} %, may be in {nominal:.0} %");
+            Chart::new(title, "stated probability", "true probability", vec![line, dots])
         };
         at_confidence.map(chart).collect()
     }

@@ -33,7 +33,6 @@ impl<'a> Arm<'a> {
         }
     }
 
-    /// Returns the temperatures of the joints \[°C\], n.
     pub(crate) fn temperatures(&self) -> &[f64] {
         &self.plant.temperatures
     }

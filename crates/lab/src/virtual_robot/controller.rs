@@ -97,7 +97,6 @@ impl<'a> Controller<'a> {
         self.commands.push_back(command);
     }
 
-    /// Returns the newest command \[N m\], n.
     pub(super) fn newest(&self) -> &[f64] {
         &self.commands[self.commands.len() - 1]
     }

@@ -153,7 +153,6 @@ fn record(fault: Fault, cycles: usize, from: usize, seed: u64) -> Trial {
     Trial { run: Run::new(n, times, states, torques).unwrap(), begins }
 }
 
-/// Records motion without a fault.
 fn record_healthy(cycles: usize, seed: u64) -> Run {
     record(Fault::None, cycles, 0, seed).run
 }
@@ -196,7 +195,6 @@ fn calibrate(model: &mut Model, recordings: &MemoryRuns, horizon: f64) -> f64 {
     growth
 }
 
-/// Records healthy motion `count` times.
 fn recordings(count: u64, cycles: usize) -> MemoryRuns {
     let mut runs = MemoryRuns::default();
     for seed in 0..count {

@@ -21,7 +21,6 @@ impl JointFriction {
         Self { law: joint.friction, limit, factors: [1.0; 2] }
     }
 
-    /// Takes over the temperature of the joint \[°C\].
     pub(super) fn warm_to(&mut self, temperature: f64) {
         let Some(warming) = self.law.warming else { return };
         let warmth = temperature - warming.reference;

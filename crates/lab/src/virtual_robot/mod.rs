@@ -18,7 +18,6 @@
 mod arm;
 mod controller;
 mod elementary;
-pub(crate) mod error;
 #[cfg(test)]
 mod fault_tests;
 mod friction;
@@ -33,7 +32,6 @@ mod tests;
 mod truth;
 
 pub(crate) use arm::{Arm, Logged};
-pub use error::VirtualRobotError;
 pub use parameters::VirtualRobotParameters;
 pub(crate) use recording::Recording;
 pub(crate) use suite::{PreRecorded, Scatter, SuiteRuns, record_suite};

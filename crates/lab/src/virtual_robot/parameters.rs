@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::VirtualRobotError;
+use crate::error::{Error, Result};
 
 /// What the virtual robot has beyond its nominal model, and its controller.
 ///
@@ -128,8 +128,8 @@ impl VirtualRobotParameters {
     ///
     /// # Errors
     ///
-    /// [`VirtualRobotError`] names the first parameter that is not.
-    pub(crate) fn validate(&self) -> Result<(), VirtualRobotError> {
+    /// [`Error`](crate::Error) names the first parameter that is not.
+    pub(crate) fn validate(&self) -> Result<()> {
         let most = f64::MAX;
         let least = f64::MIN_POSITIVE;
         let [px, py, pz] = self.payload_position;
@@ -161,7 +161,7 @@ impl VirtualRobotParameters {
         ];
         let outside = ranges.iter().find(|(_, x, low, high)| !(low..=high).contains(&x));
         outside.map_or(Ok(()), |&(name, given, low, high)| {
-            Err(VirtualRobotError::Parameter { name, given, low, high })
+            Err(Error::Parameter { name, given, low, high })
         })
     }
 }

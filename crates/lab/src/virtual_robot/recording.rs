@@ -29,7 +29,6 @@ pub(crate) struct Recording {
 }
 
 impl Recording {
-    /// Returns an empty recording with room for `samples`.
     pub(crate) fn new(joints: usize, samples: usize) -> Self {
         let room = || Vec::with_capacity(joints * samples);
         Self { joints, q: room(), qd: room(), torques: room(), temperatures: room() }

@@ -1,10 +1,9 @@
 //! Test suites of the virtual robot (Sec. V-B, Figs. 2 and 3).
 
 use super::arm::{Arm, Logged};
-use super::error::VirtualRobotError;
 use super::recording::Recording;
 use super::truth::VirtualRobot;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::motion::{Motion, Planned, SAMPLE_TIME};
 use crate::random::{SplitMix64, uniform};
 
@@ -79,7 +78,7 @@ pub(crate) struct SuiteRuns {
 ///
 /// # Errors
 ///
-/// [`VirtualRobotError::Diverged`].
+/// [`Error::Diverged`](crate::Error::Diverged).
 pub(crate) fn record_suite(
     robot: &VirtualRobot,
     motion: &Motion,
@@ -105,7 +104,7 @@ pub(crate) fn record_suite(
         let run = arm.open_loop(inputs, planned);
         if !run.is_finite() {
             let (recording, robot) = (suite.name.clone(), robot.nominal().name().into());
-            return Err(VirtualRobotError::Diverged { recording, robot }.into());
+            return Err(Error::Diverged { recording, robot });
         }
         runs.push(run);
         for (temperature, after) in temperatures.iter_mut().zip(arm.temperatures()) {

@@ -27,7 +27,7 @@ impl VirtualRobot {
     ///
     /// # Errors
     ///
-    /// [`VirtualRobotError`](super::VirtualRobotError) for a parameter outside its range, and
+    /// [`Error`](crate::Error) for a parameter outside its range, and
     /// [`RobotError`](reachtube_robot::RobotError) where the true robot is not valid.
     pub(crate) fn new(nominal: &Robot, parameters: VirtualRobotParameters) -> Result<Self> {
         parameters.validate()?;
@@ -54,7 +54,6 @@ impl VirtualRobot {
         &self.truth
     }
 
-    /// Returns the heat capacities of the joints \[J/K\], n.
     pub(super) fn capacities(&self) -> &[f64] {
         &self.capacities
     }
@@ -102,7 +101,6 @@ fn united_moments(nominal: &Robot) -> Vec<f64> {
     united.iter().map(|x| (x * 1e9).round() / 1e9).collect()
 }
 
-/// Changes the motor and the friction of a joint.
 fn change_drive(joint: &mut JointDescription, parameters: &VirtualRobotParameters) {
     joint.armature = joint.armature.map(|a| a * parameters.motor_ratio);
     joint.rotor_inertia = joint.rotor_inertia.map(|i| i * parameters.motor_ratio);

@@ -22,9 +22,9 @@ use crate::kinematics::vector::Vector;
 /// // One step of a tube: each joint within 0.01 rad of 0, each velocity within 0.1 rad/s.
 /// let joint = |radius| Interval::centred(0.0, radius);
 /// let step = [vec![joint(0.01); 6], vec![joint(0.1); 6]].concat();
-/// let occupancy = body.occupancy(&[0.0, 0.004], &StepBounds::from_boxes(12, step));
+/// let occupancy = body.occupancy(&StepBounds::from_boxes(12, step));
 /// // The upper arm's capsule grows by the way of its upper end.
-/// let upper_arm = occupancy.step(0)[1];
+/// let upper_arm = occupancy[0][1];
 /// assert!(upper_arm.radius > 0.074021 + 0.35 * 0.01 && upper_arm.radius < 0.08);
 /// # Ok::<(), reachtube_verify::Error>(())
 /// ```

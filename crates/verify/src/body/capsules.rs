@@ -108,7 +108,6 @@ impl Capsules {
     }
 }
 
-/// Checks that the robot of a URDF has the joints of `robot`, and their links in the same places.
 fn check_same(robot: &Robot, other: &Robot, path: &Path) -> Result<()> {
     let names = |robot: &Robot| -> Vec<String> {
         robot.joints().iter().map(|joint| format!("`{}`", joint.name)).collect()

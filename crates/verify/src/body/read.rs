@@ -31,7 +31,6 @@ enum LinkName {
     Joint(String),
 }
 
-/// Reads the capsules of a robot, at least one.
 pub(super) fn parse(text: &str, origin: &str, robot: &Robot) -> Result<Vec<Capsule>> {
     let file: File = toml::from_str(text)
         .map_err(|e| Error::Syntax { origin: origin.into(), message: e.to_string() })?;

@@ -51,7 +51,6 @@ impl Frame {
         Self { rotation: [[i, o, o], [o, i, o], [o, o, i]], origin: [o; 3] }
     }
 
-    /// Encloses a constant placement.
     pub(crate) fn constant(placement: &Placement) -> Self {
         let is_whole = placement.rotation.iter().all(|x| *x == 0.0 || x.abs() == 1.0);
         let entry = |x: f64| match is_whole {
@@ -92,7 +91,6 @@ impl Chain {
         self.joints.len()
     }
 
-    /// Returns whether joint `index` is revolute.
     pub(crate) fn turns(&self, index: usize) -> bool {
         self.joints[index].kind == JointKind::Revolute
     }

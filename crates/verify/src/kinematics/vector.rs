@@ -9,22 +9,18 @@ pub(crate) type Vector = [Interval; 3];
 /// A matrix, by its rows.
 pub(crate) type Matrix = [Vector; 3];
 
-/// Returns a vector without width.
 pub(crate) fn point(v: [f64; 3]) -> Vector {
     v.map(Interval::point)
 }
 
-/// Adds two vectors.
 pub(crate) fn add(a: &Vector, b: &Vector) -> Vector {
     core::array::from_fn(|i| a[i] + b[i])
 }
 
-/// Subtracts two vectors.
 pub(crate) fn sub(a: &Vector, b: &Vector) -> Vector {
     core::array::from_fn(|i| a[i] - b[i])
 }
 
-/// Multiplies a vector by a number.
 pub(crate) fn scaled(a: &Vector, by: Interval) -> Vector {
     a.map(|x| times(x, by))
 }
@@ -34,19 +30,16 @@ pub(crate) fn cross(a: &Vector, b: &Vector) -> Vector {
     [minor(1, 2), minor(2, 0), minor(0, 1)]
 }
 
-/// Multiplies a matrix and a vector.
 pub(crate) fn image(m: &Matrix, v: &Vector) -> Vector {
     core::array::from_fn(|i| dot(&m[i], v))
 }
 
-/// Multiplies two matrices.
 pub(crate) fn product(a: &Matrix, b: &Matrix) -> Matrix {
     let column = |j: usize| [b[0][j], b[1][j], b[2][j]];
     let columns = [column(0), column(1), column(2)];
     core::array::from_fn(|i| core::array::from_fn(|j| dot(&a[i], &columns[j])))
 }
 
-/// Returns the inner product.
 pub(crate) fn dot(a: &Vector, b: &Vector) -> Interval {
     let mut sum = Interval::ZERO;
     for (x, y) in a.iter().zip(b) {

@@ -45,7 +45,6 @@ pub enum Solid {
 }
 
 impl Obstacle {
-    /// Returns whether the link that a joint moves must stay clear of it.
     pub(crate) fn concerns(&self, joint: usize) -> bool {
         self.joints.as_ref().is_none_or(|joints| joints.contains(&joint))
     }

@@ -81,7 +81,6 @@ impl Deceleration {
         &self.torques
     }
 
-    /// Returns when `cycles` cycles end, s.
     pub(super) fn end_of(&self, cycles: usize) -> f64 {
         CYCLE * cycles as f64
     }

@@ -142,7 +142,6 @@ impl<'a> Arm<'a> {
         }
     }
 
-    /// Computes mass and gravity anew, which change little in a few steps.
     fn refresh(&mut self) -> Option<()> {
         self.inverse = self.robot.mass_matrix(&self.q).try_inverse()?;
         self.load = self.robot.gravity_torque(&self.q);

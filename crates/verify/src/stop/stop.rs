@@ -267,7 +267,6 @@ impl<'a> Run<'a> {
         true
     }
 
-    /// Returns when the next step ends: with the cycle of the drives, or where a delay ends.
     fn end_of_step(&self) -> f64 {
         if let Some(drive) = &self.drive {
             return drive.deceleration.end_of(drive.cycle + 1);

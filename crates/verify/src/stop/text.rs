@@ -74,8 +74,8 @@ pub fn annex_table(rows: &[AnnexRow], unit: &str) -> Table {
             bound(row.time),
         ]
     };
-    let title = "ISO 10218-1, Annex B: proved stopping distances and times".to_string();
-    Table { title, ..Table::new(header, rows.iter().map(row).collect()) }
+    let title = "ISO 10218-1, Annex B: proved stopping distances and times";
+    Table::new(header, rows.iter().map(row).collect()).titled(title)
 }
 
 /// Returns recorded stops beside the proved ones as a table.
@@ -97,8 +97,8 @@ pub fn recorded_table(stops: &[RecordedStop], unit: &str) -> Table {
             if stop.is_within { "yes" } else { "no" }.into(),
         ]
     };
-    let title = "recorded stops, measured and proved from their first states".into();
-    Table { title, ..Table::new(header, stops.iter().map(row).collect()) }
+    let title = "recorded stops, measured and proved from their first states";
+    Table::new(header, stops.iter().map(row).collect()).titled(title)
 }
 
 fn is_about_table(finding: &Finding) -> bool {

@@ -118,7 +118,6 @@ pub(super) fn clears(all: &[Clearance], scene: &Scene) -> bool {
     all.iter().all(|pair| pair.distance > scene.clearance)
 }
 
-/// Scales the radii of X0 and U.
 fn scaled(sets: &UncertaintySets, factor: f64) -> UncertaintySets {
     UncertaintySets {
         initial_set: scaled_set(&sets.initial_set, factor),

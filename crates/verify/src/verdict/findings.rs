@@ -48,7 +48,6 @@ pub fn worst_first(all: &[Verification]) -> Vec<&Verification> {
     order
 }
 
-/// Returns the smallest proved distance of a motion and its stops \[m\].
 fn proved(v: &Verification) -> f64 {
     let motion = v.clearances.first().map(|pair| pair.distance);
     let stop = v.stops.as_ref().and_then(|stops| Some(stops.clearances.first()?.distance));

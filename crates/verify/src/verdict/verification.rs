@@ -1,5 +1,7 @@
 //! The verdict about each motion.
 
+use std::fmt;
+
 use reachtube_conform::data::Case;
 use reachtube_conform::tube::Lost;
 use reachtube_conform::{Problem, SuiteReach, Tube, reach};
@@ -31,6 +33,16 @@ pub enum Answer {
     Undecided,
     /// A motion of the model comes too close.
     Unsafe,
+}
+
+impl fmt::Display for Answer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Safe => "safe",
+            Self::Undecided => "undecided",
+            Self::Unsafe => "unsafe",
+        })
+    }
 }
 
 /// The verdict about a suite, or about a run that has its own nominal motion.

@@ -2,14 +2,13 @@ use std::path::{Path, PathBuf};
 
 use reachtube::identify::prepare::LogEntry;
 use reachtube::identify::{Identification, IdentifySettings, identify};
-use reachtube::page::write_identified_html;
+use reachtube::page::identified_html;
 use reachtube::recordings::Torque;
 use reachtube::write;
 use reachtube_files::MARK;
 use reachtube_robot::{Robot, Urdf, UrdfOptions};
 
 use super::arguments::Arguments;
-use super::summary::summary;
 use crate::error::{Error, NO_ROBOT, Result};
 use crate::outcome::Outcome;
 use crate::output;
@@ -30,9 +29,13 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     drop(bar);
     output::notes(&found.changes);
     files(args, &found, urdf.as_ref())?;
-    output::show(json, &found.summary(), || summary(&found))?;
+    output::show(json, &found.summary(), || text(&found))?;
     output::warnings(&found.warnings);
     Ok(Outcome::Done)
+}
+
+fn text(found: &Identification) -> String {
+    format!("{}: identified\n\n{}", found.description.name, found.report())
 }
 
 /// Returns the files that the arguments select.
@@ -75,9 +78,7 @@ fn check_urdf(args: &Arguments, robot: &str) -> Result<()> {
 /// Writes the robot file, the report page and the URDF that the arguments select.
 fn files(args: &Arguments, found: &Identification, urdf: Option<&Urdf>) -> Result<()> {
     if let Some(folder) = &args.report {
-        let mut page = Vec::new();
-        write_identified_html(found, &mut page)?;
-        save(&page_in(folder), &page)?;
+        save(&page_in(folder), identified_html(found)?.as_bytes())?;
     }
     let writes_robot = args.out.is_some() || args.urdf.is_some();
     if let Some(problem) = found.inertia.impossible.clone().filter(|_| writes_robot) {
