@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use reachtube::abstraction::ExpansionPoint;
+use reachtube::arm::{self, ArmSettings, Basis};
 use reachtube::conform::{
-    Answer, Basis, CheckJob, FitSettings, Group, Job, Keep, Model, Opened, Settings, Setup,
-    SuiteReach,
+    Answer, CheckJob, FitSettings, Group, Job, Keep, Opened, Settings, Setup, SuiteReach,
 };
 use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
@@ -21,18 +21,21 @@ use crate::robot::NativeRobot;
 use crate::watched::watched;
 
 /// Returns settings from the defaults and a JSON object with the settings that differ.
-fn settings(text: &str, joints: usize) -> Result<Settings> {
+fn settings(text: &str, joints: usize) -> Result<(ArmSettings, Settings)> {
     let mut given: Map<String, Value> = serde_json::from_str(text).map_err(Failure::setting)?;
     let torque = given.remove("torque").unwrap_or_default();
     let torque: Torque = serde_json::from_value(torque)
         .map_err(|error| Failure::Setting(format!("torque: {error}")))?;
     let expansion = take::<Vec<f64>>(&mut given, "expansion")?.unwrap_or_default();
     let max_gap = take::<f64>(&mut given, "max_gap")?;
-    let defaults = Settings {
+    let defaults = ArmSettings::new(torque, joints);
+    let arm = ArmSettings {
+        abstraction: take(&mut given, "abstraction")?.unwrap_or(defaults.abstraction),
+        equations: take(&mut given, "equations")?.unwrap_or(defaults.equations),
         expansion_point: ExpansionPoint::from_values(&expansion, joints)?,
-        ..Settings::new(torque, joints)
+        torque,
     };
-    let mut all = serde_json::to_value(defaults).map_err(Failure::setting)?;
+    let mut all = serde_json::to_value(Settings::default()).map_err(Failure::setting)?;
     for (name, value) in given {
         all[&name] = value;
         // Each by itself, so that an error names the setting.
@@ -42,7 +45,7 @@ fn settings(text: &str, joints: usize) -> Result<Settings> {
     let settings: Settings = serde_json::from_value(all).map_err(Failure::setting)?;
     let settings = Settings { gap_limit: max_gap.into(), ..settings };
     settings.validate(joints)?;
-    Ok(settings)
+    Ok((arm, settings))
 }
 
 fn take<T: serde::de::DeserializeOwned>(
@@ -68,8 +71,8 @@ pub(crate) fn basis(
 
 /// Returns the setup of a conformance, whose settings are the defaults but for those given.
 pub(crate) fn setup(basis: Basis, settings_text: &str) -> Result<Setup> {
-    let settings = settings(settings_text, basis.joints())?;
-    Ok(basis.setup(settings)?)
+    let (arm, settings) = settings(settings_text, basis.joints())?;
+    Ok(basis.setup(arm, settings)?)
 }
 
 /// Finds the smallest sets, and returns the model file's text and notes about the recordings.
@@ -96,10 +99,7 @@ pub(crate) fn conform(
     let basis = basis(robot, abstraction).map_err(|failure| failure.raised(py))?;
     let source = source.source.clone();
     watched(py, progress.as_ref(), move |watch| {
-        let settings = self::settings(&settings, basis.joints())?;
-        let torque = settings.torque;
-        let job = Job::new(basis, source, torque)
-            .settings(settings)
+        let job = Job::new(setup(basis, &settings)?, source)
             .suites(suites)
             .fit(fit_settings(&fit, pull)?)
             .resume(resume);
@@ -136,20 +136,20 @@ pub(crate) fn pull_without_fit() -> Failure {
 /// Returns the JSON schema of model files.
 #[pyfunction]
 pub(crate) fn model_schema() -> String {
-    Model::schema().to_string()
+    arm::model_schema().to_string()
 }
 
 /// Checks the text of a model file; errors name it `origin`.
 #[pyfunction]
 pub(crate) fn check_model(py: Python<'_>, text: String, origin: String) -> PyResult<()> {
-    watched(py, None, move |_| Ok(Model::parse(&text, Path::new(&origin)).map(|_| ())?))
+    watched(py, None, move |_| Ok(arm::parse(&text, Path::new(&origin)).map(|_| ())?))
 }
 
 /// Returns the text of a model file whose bounds count the models in the folder of `path` that the
 /// same recordings calibrated.
 #[pyfunction]
 pub(crate) fn among_others(py: Python<'_>, text: String, path: PathBuf) -> PyResult<String> {
-    watched(py, None, move |_| Ok(Model::parse(&text, &path)?.0.among_others(&path).to_json()))
+    watched(py, None, move |_| Ok(arm::parse(&text, &path)?.0.among_others(&path).to_json()))
 }
 
 /// Sets what differs from a model's settings.
@@ -169,7 +169,7 @@ pub(crate) struct Wanted {
 
 impl Wanted {
     pub(crate) fn open(self, watch: &dyn Progress) -> Result<Opened> {
-        let (model, setup) = Model::parse(&self.model, Path::new("model"))?;
+        let (model, setup) = arm::parse(&self.model, Path::new("model"))?;
         let mut given: Map<String, Value> =
             serde_json::from_str(&self.settings).map_err(Failure::setting)?;
         let job = CheckJob::new(model, setup, self.source)

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
+use reachtube::arm;
 use reachtube::conform::fleet::{Fold, OnDefect};
 use reachtube::conform::{self as product, Answer, Model, Problem, Setup, Tube};
 use reachtube::recordings::{Defect, DefectKind};
@@ -58,7 +59,7 @@ impl NativeFleet {
     #[staticmethod]
     fn to_check(py: Python<'_>, model: String, settings: String) -> PyResult<Self> {
         watched(py, None, move |_| {
-            let (model, setup) = Model::parse(&model, Path::new("model"))?;
+            let (model, setup) = arm::parse(&model, Path::new("model"))?;
             let given: Map<String, Value> =
                 serde_json::from_str(&settings).map_err(Failure::setting)?;
             let setup = differing(setup, given)?;

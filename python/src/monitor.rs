@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use pyo3::prelude::*;
-use reachtube::Model;
-use reachtube::conform::data::Side;
+use reachtube::arm;
+use reachtube::conform::data::{Side, Signals};
 use reachtube::conform::monitor::{Alarm, Fault, Leave, Schedule};
 use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
-use reachtube::robot::{JointKind, Robot};
 
 use crate::arrays::{Input, Output, array, values};
 use crate::failure::{Failure, Result};
@@ -25,7 +24,7 @@ type Alarmed = (f64, &'static str, Option<usize>, f64, f64, f64);
 #[pyclass(name = "Monitor", module = "reachtube._reachtube")]
 pub(crate) struct NativeMonitor {
     monitor: LiveMonitor,
-    joints: Vec<(String, JointKind)>,
+    signals: Signals,
     /// The first value outside.
     first: Option<Leave>,
     alarms: Vec<Alarm>,
@@ -47,7 +46,7 @@ impl NativeMonitor {
         healthy: Option<PyRef<'_, NativeSource>>,
     ) -> PyResult<Self> {
         let made = || -> Result<Self> {
-            let (model, _) = Model::parse(model, Path::new("the model"))?;
+            let (model, _) = arm::parse(model, Path::new("the model"))?;
             let own = Schedule::new(&model, step);
             let usual = Schedule::with_horizon(horizon.unwrap_or(own.horizon), step);
             let schedule = Schedule {
@@ -66,10 +65,8 @@ impl NativeMonitor {
                 monitor.watch(&known)?;
                 alarm_bound = Some(known.bound());
             }
-            let robot = Robot::from_description(&model.robot())?;
-            let joints = robot.joints().iter().map(|joint| (joint.name.clone(), joint.kind));
-            let (joints, alarms) = (joints.collect(), Vec::new());
-            Ok(Self { monitor, joints, first: None, alarms, alarm_bound })
+            let alarms = Vec::new();
+            Ok(Self { monitor, signals: model.signals, first: None, alarms, alarm_bound })
         };
         made().map_err(|failure| failure.raised(py))
     }
@@ -83,7 +80,7 @@ impl NativeMonitor {
         qd: Input<'_>,
         tau: Input<'_>,
     ) -> PyResult<Vec<Left>> {
-        let n = self.joints.len();
+        let n = self.signals.parts.len();
         let mut take = || -> Result<Vec<Left>> {
             let count = times.as_array().len();
             let times = values("t", &times, &[count])?;
@@ -124,15 +121,9 @@ impl NativeMonitor {
 
     /// Returns the findings, a JSON list: the verdict, the first value outside, the first alarm.
     fn findings(&self) -> String {
-        let first = self.first.map(|leave| {
-            let (name, kind) = &self.joints[leave.joint - 1];
-            leave.finding(name, *kind)
-        });
+        let first = self.first.map(|leave| leave.finding(&self.signals));
         let verdict = self.monitor.found().totals().finding();
-        let alarm = self.alarms.first().map(|alarm| {
-            let joint = alarm.joint.map(|joint| &self.joints[joint - 1]);
-            alarm.finding(joint.map(|(name, kind)| (&**name, *kind)))
-        });
+        let alarm = self.alarms.first().map(|alarm| alarm.finding(&self.signals));
         list(&[verdict].into_iter().chain(first).chain(alarm).collect::<Vec<_>>())
     }
 

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
-use reachtube::conform::{Keep, Model, Opened};
+use reachtube::arm::{self, OfArm, beyond_proof_of_stops};
+use reachtube::conform::{Keep, Opened};
 use reachtube::page::{StopPage, stop_html, verify_files};
 use reachtube::pipeline::ScenarioJob;
 use reachtube::recordings::RunSource;
@@ -51,14 +52,14 @@ pub(crate) fn stop(
             StopQuestion { brakes: &brakes, category: &category, every, table, recorded };
         let study = stop_study(&problem, &tube.sets, &question)?;
         let robot = problem.robot();
-        let warnings = &model.beyond_proof_of_stops(&problem);
+        let warnings = &beyond_proof_of_stops(&model, &problem);
         let mut files = Vec::new();
         if table {
             let (model, brakes, study) = (&model, &brakes, &study);
             let page = StopPage { robot, model, brakes, study, warnings };
             files.push((reachtube::page::STOP_PAGE_FILE.to_string(), stop_html(&page)?));
         }
-        let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
+        let unit = JointKind::column(&robot.kinds(), JointKind::position_unit).any();
         let findings = [&study.findings[..], warnings].concat();
         Ok(kept(json!(study), &list(&findings), &study.text(&unit), &files))
     })
@@ -85,7 +86,7 @@ pub(crate) fn verify(
         let verified = match in_memory {
             None => ScenarioJob::new(scenario)?.run(watch)?,
             Some((model, source)) => {
-                let (model, setup) = Model::parse(&model, Path::new("model"))?;
+                let (model, setup) = arm::parse(&model, Path::new("model"))?;
                 ScenarioJob::with_model(scenario, model, setup)?.run_over(source, watch)?
             }
         };

@@ -42,7 +42,7 @@ def test_nominal_motions_may_follow_the_robot(robot: rt.Robot) -> None:
         rt.conform(robot, exact, torque="motor", equations=equations)
         for equations in ("model", "robot")
     )
-    assert by_robot.to_dict()["settings"]["equations"] == "robot"
+    assert by_robot.to_dict()["drive"]["settings"]["equations"] == "robot"
     assert rt.check(by_robot, exact)
     # The robot itself gives the torques, and its inertia is another than at q = 0.
     assert by_robot.cost is not None and model.cost is not None

@@ -53,7 +53,7 @@ fn inverse_mass_matrix(robot: &Robot, point: &ExpansionPoint) -> Result<DMatrix<
     let mut factors = robot.mass_matrix(&point.q).as_slice().to_vec();
     ltdl::factor(&mut factors, n);
     if (0..n).any(|i| !(factors[i * n + i] > 0.0 && factors[i * n + i].is_finite())) {
-        let unit = JointKind::units(&robot.kinds(), JointKind::position_unit);
+        let unit = JointKind::column(&robot.kinds(), JointKind::position_unit).list();
         let (robot, q) = (robot.name().into(), point.q.clone());
         return Err(Error::SingularMassMatrix { robot, q, unit });
     }

@@ -1,6 +1,7 @@
 //! A model and the recordings it is compared with.
 
 use reachtube::Model;
+use reachtube::arm::{self, OfArm};
 use reachtube::conform::{
     self, Check, Keep, Notion, Problem, Setup, SuiteReach, Tube, check, reach,
 };
@@ -29,7 +30,7 @@ impl OpenedCheck {
     /// Opens the model file, reads the recordings and computes the reachable sets; recordings are
     /// judged by `notion`, or by the notion in the file.
     pub(crate) fn new(args: &ModelArguments, notion: Option<Notion>, keep: Keep) -> Result<Self> {
-        let (mut model, setup) = Model::open(&args.model)?;
+        let (mut model, setup) = arm::open(&args.model)?;
         // Models that were written later are counted too; the digest stays the file's.
         Model { trust: model.trust, calibration: model.calibration, .. } =
             model.clone().among_others(&args.model);
@@ -44,8 +45,8 @@ impl OpenedCheck {
         notion: Option<Notion>,
         keep: Keep,
     ) -> Result<Self> {
-        let settings = setup.settings();
-        let expected = model.preparation.as_ref().map_or(settings.torque, |known| known.torque);
+        let own = setup.arm().settings.torque;
+        let expected = model.preparation.as_ref().map_or(own, |known| known.torque);
         if let Some(given) = args.torque.filter(|given| *given != expected) {
             let [given, model] =
                 [given, expected].map(|torque| format!("{torque:?}").to_lowercase());

@@ -1,12 +1,13 @@
 //! The JSON schemas of files and results, generated from the types that are written.
 
 use clap::ValueEnum;
+use reachtube::arm::model_schema;
 use reachtube::campaign::RecordedCampaign;
 use reachtube::identify::Summary;
 use reachtube::pipeline::{ModelOutput, VerifyOutput};
 use reachtube::recordings::Inspection;
 use reachtube::verify::StopStudy;
-use reachtube::{Check, Model, abstraction};
+use reachtube::{Check, abstraction};
 use reachtube_files::schema_of_any;
 use reachtube_logs::LogInspection;
 use schemars::JsonSchema;
@@ -39,7 +40,7 @@ pub(crate) enum SchemaOf {
 /// Returns a schema.
 pub(crate) fn schema_of(what: SchemaOf) -> Value {
     match what {
-        SchemaOf::Model => Model::schema(),
+        SchemaOf::Model => model_schema(),
         SchemaOf::Abstraction => abstraction::file_schema(),
         SchemaOf::Results => results(),
     }

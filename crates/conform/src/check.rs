@@ -123,17 +123,18 @@ impl Check {
 
     /// Words the answer.
     fn with_findings(mut self, model: &Model) -> Self {
-        let (verdict, kinds) = (&self.verdict, model.drive.robot.kinds());
+        let (verdict, signals) = (&self.verdict, &model.signals);
         let set = verdict.enclosure.set_name();
         let mut findings = vec![findings::verdict_of_check(verdict, &self.provenance.settings)];
         findings.extend(findings::vacuous(model));
         findings.extend(findings::points(verdict, model.settings.states));
         let furthest = verdict.points.as_ref().and_then(|points| points.worst.as_ref());
-        findings.extend(furthest.map(|worst| findings::furthest_point(worst, &kinds)));
+        findings.extend(furthest.map(|worst| findings::furthest_point(worst, signals)));
         let worst = verdict.violations.worst.as_ref();
-        findings.extend(worst.map(|worst| findings::furthest_value(worst, &kinds)));
+        findings.extend(worst.map(|worst| findings::furthest_value(worst, signals)));
         findings.extend(verdict.lost.iter().map(Finding::from));
-        findings.extend(self.growth.as_ref().map(|growth| findings::growth_needed(growth, &kinds)));
+        findings
+            .extend(self.growth.as_ref().map(|growth| findings::growth_needed(growth, signals)));
         findings.push(match &self.trust {
             Some(held_out) => findings::next_motion(held_out, set, "left it"),
             None => findings::fitted_to_these(),

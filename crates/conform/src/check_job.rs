@@ -16,8 +16,7 @@ use crate::tube::tube::Tube;
 #[derive(Debug)]
 pub struct CheckJob {
     model: Model,
-    /// The setup of the model, if it was made already.
-    setup: Option<Setup>,
+    setup: Setup,
     source: Box<dyn RunSource>,
     suites: Vec<String>,
     notion: Option<Notion>,
@@ -38,16 +37,12 @@ pub struct Opened {
 }
 
 impl CheckJob {
-    /// Makes a job of a model and the setup that [`Model::open`] returns with it.
+    /// Makes a job of a model and its setup.
     pub fn new(model: Model, setup: Setup, source: impl RunSource + 'static) -> Self {
-        Self::of(model, Some(setup), Box::new(source))
-    }
-
-    fn of(model: Model, setup: Option<Setup>, source: Box<dyn RunSource>) -> Self {
         Self {
             model,
             setup,
-            source,
+            source: Box::new(source),
             suites: Vec::new(),
             notion: None,
             until: None,
@@ -93,10 +88,6 @@ impl CheckJob {
     /// As [`Problem::read`] and [`Tube::new`].
     pub fn open(self, progress: &dyn Progress) -> Result<Opened> {
         let Self { model, setup, source, suites, keep, .. } = self;
-        let setup = match setup {
-            Some(setup) => setup,
-            None => model.setup()?,
-        };
         let setup = setup.judged_by(self.notion, self.until, self.gap_limit);
         let problem = Problem::read(setup, source, &suites, keep, progress)?;
         let tube = Tube::new(&problem, model.sets())?;
@@ -114,14 +105,6 @@ impl CheckJob {
     /// As [`open`](Self::open). Recordings that do not lie in the sets are no error.
     pub fn run(self, progress: &dyn Progress) -> Result<Check> {
         self.open(progress)?.check()
-    }
-}
-
-impl Model {
-    /// Compares the model with other recordings.
-    #[must_use]
-    pub fn check(&self, source: impl RunSource + 'static) -> CheckJob {
-        CheckJob::of(self.clone(), None, Box::new(source))
     }
 }
 

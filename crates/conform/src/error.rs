@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use reachtube_files::AnyError;
 use reachtube_reach::ReachError;
 use thiserror::Error;
 
@@ -68,13 +69,9 @@ pub enum Error {
         /// The problem.
         problem: String,
     },
-    /// Nominal motions by the robot's own equations were asked of a model that is not linear.
-    #[error(
-        "nominal motions by the robot's own equations need a linear model, which then describes \
-         deviations only; use model 1 of order 1 with the method program, or let nominal motions \
-         follow the model's equations"
-    )]
-    Equations,
+    /// What drives the model cannot do what was asked.
+    #[error("{0}")]
+    Drive(Advice),
     /// U was to cover stiction, and cannot.
     #[error("U cannot be widened for stiction: {0}")]
     Stiction(&'static str),
@@ -116,22 +113,19 @@ pub enum Error {
     /// Recordings have defects, or could not be read.
     #[error(transparent)]
     Recordings(#[from] reachtube_recordings::Error),
-    /// The model could not be made.
-    #[error(transparent)]
-    Abstraction(#[from] reachtube_abstraction::Error),
     /// A file could not be read or written.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
-    /// The robot's description is wrong.
+    /// What drives the model, or the model itself, could not be made.
     #[error(transparent)]
-    Robot(#[from] reachtube_robot::RobotError),
+    Other(#[from] AnyError),
     /// The reachable set could not be computed.
     #[error(transparent)]
     Reach(#[from] ReachError),
 }
 
 reachtube_files::kinds!(Error {
-    [Recordings | Abstraction | File | Robot] => inner,
+    [Recordings | File | Other] => inner,
     ModelFile => Model,
     Changed | Healthy | TooFewHealthy => Recordings,
     SettingCount | SettingRange | NotPoints | Calibration => Setting,
@@ -139,13 +133,19 @@ reachtube_files::kinds!(Error {
 });
 
 impl Error {
+    /// Takes an error of what drives a model.
+    pub fn other(error: impl reachtube_files::Kind) -> Self {
+        Self::Other(AnyError::new(error))
+    }
+
     /// Returns the settings that help.
     #[must_use]
     pub(crate) fn settings(&self) -> Vec<Setting> {
         match self {
-            Self::Equations => vec![Setting::new("equations", "model")],
             Self::NotPoints => vec![Setting::new("notion", "exact")],
-            Self::Calibration(advice) | Self::Fold(advice) => advice.settings.clone(),
+            Self::Calibration(advice) | Self::Drive(advice) | Self::Fold(advice) => {
+                advice.settings.clone()
+            }
             Self::RunsAway { time, .. } => {
                 vec![Setting::new("until", format!("{time:.3}")), Setting::new("torque", "")]
             }
@@ -162,8 +162,8 @@ impl Error {
     /// use reachtube_conform::Error;
     /// use reachtube_finding::FrontEnd;
     ///
-    /// let written = Error::Equations.written_for(FrontEnd::Python);
-    /// assert!(written.ends_with("(equations=\"model\")"));
+    /// let written = Error::NotPoints.written_for(FrontEnd::Python);
+    /// assert!(written.ends_with("(notion=\"exact\")"));
     /// ```
     #[must_use]
     pub fn written_for(&self, front_end: FrontEnd) -> String {
@@ -188,5 +188,5 @@ fn range(low: f64, high: f64) -> String {
     }
 }
 
-/// A result of this crate.
-pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;
+/// The result of a step of a conformance.
+pub type Result<T, E = Error> = std::result::Result<T, E>;

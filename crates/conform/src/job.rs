@@ -1,124 +1,34 @@
 //! A conformance from recordings to an answer, as every front end poses it.
 
-use std::borrow::Cow;
 use std::path::PathBuf;
 
-use reachtube_abstraction::PolynomialModel;
-use reachtube_recordings::{RunSource, Torque};
-use reachtube_robot::Robot;
+use reachtube_recordings::RunSource;
 
 use crate::answer::Answer;
-use crate::data::notion::Notion;
 use crate::data::problem::{Keep, Problem};
-use crate::data::settings::Settings;
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::fit::group::{FitSettings, Group};
 use crate::progress::Progress;
 
-/// What the nominal model is made of.
-#[derive(Debug, Clone)]
-pub enum Basis {
-    /// A robot, whose model the settings select.
-    Robot(Box<Robot>),
-    /// A model of a robot, with its own expansion point and order.
-    Abstraction(Box<PolynomialModel>),
-}
-
-/// A conformance to compute: a robot, recordings and settings. It passes data between the steps, so
+/// A conformance to compute: a setup and recordings. It passes data between the steps, so
 /// that every front end runs the same job in the same way.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_conform::{Job, Silent};
-/// use reachtube_recordings::{MemoryRuns, Run, Torque};
-/// use reachtube_robot::Robot;
-///
-/// // An arm at rest.
-/// let times = vec![0.0, 0.004, 0.008];
-/// let run = Run::new(6, times, vec![0.0; 36], vec![0.0; 18])?;
-/// let mut runs = MemoryRuns::default();
-/// runs.push("rest", Some("A"), None, run);
-///
-/// let answer = Job::new(Robot::lwa4p(), runs, Torque::Compensated).suites(["A"]).run(&Silent)?;
-/// assert!(answer.holds());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct Job {
-    basis: Basis,
+    setup: Setup,
     source: Box<dyn RunSource>,
     suites: Vec<String>,
-    settings: Settings,
     fit: Option<FitSettings>,
     keeps_runs: bool,
     is_certified: bool,
     resume: Option<PathBuf>,
 }
 
-impl From<Robot> for Basis {
-    fn from(robot: Robot) -> Self {
-        Self::Robot(Box::new(robot))
-    }
-}
-
-impl From<PolynomialModel> for Basis {
-    fn from(model: PolynomialModel) -> Self {
-        Self::Abstraction(Box::new(model))
-    }
-}
-
-impl Basis {
-    /// Returns the number of joints n.
-    #[must_use]
-    pub fn joints(&self) -> usize {
-        match self {
-            Self::Robot(robot) => robot.joint_count(),
-            Self::Abstraction(model) => model.joints(),
-        }
-    }
-
-    /// Returns the robot.
-    ///
-    /// # Errors
-    ///
-    /// A description in the file of an abstraction that is none.
-    pub fn robot(&self) -> Result<Cow<'_, Robot>> {
-        Ok(match self {
-            Self::Robot(robot) => Cow::Borrowed(robot),
-            Self::Abstraction(model) => Cow::Owned(Robot::from_description(model.robot())?),
-        })
-    }
-
-    /// Makes the setup of a conformance.
-    ///
-    /// # Errors
-    ///
-    /// As [`Setup::new`]; an abstraction that does not fit the settings; a robot that is not
-    /// physical.
-    pub fn setup(self, settings: Settings) -> Result<Setup> {
-        match self {
-            Self::Robot(robot) => {
-                robot.check_physical()?;
-                Setup::new(*robot, settings)
-            }
-            Self::Abstraction(model) => {
-                let setup = Setup::with_abstraction(*model, settings)?;
-                setup.robot().check_physical()?;
-                Ok(setup)
-            }
-        }
-    }
-}
-
 impl Job {
-    /// Makes a job with default settings: a linear model, the notion hull, all suites.
-    pub fn new(basis: impl Into<Basis>, source: impl RunSource + 'static, torque: Torque) -> Self {
-        let basis = basis.into();
+    /// Makes a job that finds the sets of a setup for all suites of a source.
+    pub fn new(setup: Setup, source: impl RunSource + 'static) -> Self {
         Self {
-            settings: Settings::new(torque, basis.joints()),
-            basis,
+            setup,
             source: Box::new(source),
             suites: Vec::new(),
             fit: None,
@@ -132,19 +42,6 @@ impl Job {
     #[must_use]
     pub fn suites<T: Into<String>>(self, names: impl IntoIterator<Item = T>) -> Self {
         Self { suites: names.into_iter().map(Into::into).collect(), ..self }
-    }
-
-    /// Replaces all settings.
-    #[must_use]
-    pub fn settings(self, settings: Settings) -> Self {
-        Self { settings, ..self }
-    }
-
-    /// Chooses in which directions recordings must lie in the reachable set.
-    #[must_use]
-    pub fn notion(mut self, notion: Notion) -> Self {
-        self.settings.notion = notion;
-        self
     }
 
     /// Fits the nominal model for small sets first.
@@ -175,10 +72,10 @@ impl Job {
     ///
     /// # Errors
     ///
-    /// Settings that do not fit each other, the robot or the model, all before anything is read; as
+    /// Settings that do not fit each other or the model, all before anything is read; as
     /// [`Problem::read`].
     pub fn read(self, progress: &dyn Progress) -> Result<Problem> {
-        let setup = self.basis.setup(self.settings)?;
+        let setup = self.setup;
         let has_points =
             setup.settings.notion.asks_points() && setup.dynamics.linear_system().is_some();
         if self.is_certified && !has_points {

@@ -12,7 +12,6 @@
 //! stay on several machines.
 
 mod answer;
-mod arm;
 mod carry_over;
 mod check;
 mod check_job;
@@ -48,10 +47,10 @@ pub use data::problem::{Keep, Problem};
 pub use data::recordings::Recordings;
 pub use data::settings::{self, Noise, Settings};
 pub use data::setup::Setup;
-pub use error::Error;
+pub use error::{Error, Result};
 pub use fit::fit::fit;
 pub use fit::group::{FitSettings, Group};
-pub use job::{Basis, Job};
+pub use job::Job;
 pub use model::Model;
 pub use progress::{Progress, Silent};
 pub use reach::{SuiteReach, reach};

@@ -62,6 +62,39 @@ impl<E: Kind> Kind for Box<E> {
     }
 }
 
+/// An error of a crate above, which the crate that passes it on does not know.
+#[derive(Debug)]
+pub struct AnyError(Box<dyn Kind>);
+
+impl std::fmt::Display for AnyError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl std::error::Error for AnyError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.0.source()
+    }
+}
+
+impl AnyError {
+    /// Takes an error.
+    pub fn new(error: impl Kind) -> Self {
+        Self(Box::new(error))
+    }
+}
+
+impl Kind for AnyError {
+    fn kind(&self) -> ErrorKind {
+        self.0.kind()
+    }
+
+    fn inner(&self) -> Option<&dyn Kind> {
+        Some(&*self.0)
+    }
+}
+
 /// Implements [`Kind`] for an enum: the variants that pass on another error, the variants of each
 /// kind, and the kind of all others.
 ///

@@ -36,7 +36,7 @@ pub mod write;
 pub use digest::hex;
 pub use error::Error;
 pub use journal::Journal;
-pub use kind::{ErrorKind, Kind};
+pub use kind::{AnyError, ErrorKind, Kind};
 pub use names::distinct_names;
 pub use overwrite::{MARK, Overwrite, TOOL};
 pub use read::{bytes, read, read_text};

@@ -12,6 +12,7 @@ mod remedy;
 mod report;
 mod summary;
 mod table;
+mod units;
 
 pub use advice::{Advice, advised};
 pub use code::Code;
@@ -22,3 +23,4 @@ pub use remedy::Remedy;
 pub use report::{Report, Section};
 pub use summary::Summary;
 pub use table::Table;
+pub use units::Units;

@@ -206,7 +206,7 @@ fn described(sampling: &Sampling, moving: &[&PreparedLog], robot: &Robot) -> Str
         },
         1e3 * sampling.margin,
         slow.join(", "),
-        JointKind::units(&robot.kinds(), JointKind::velocity_unit)
+        JointKind::column(&robot.kinds(), JointKind::velocity_unit).list()
     )
 }
 

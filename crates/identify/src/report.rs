@@ -1,7 +1,7 @@
 //! The result of an identification in words and tables, as the command and the page show it.
 
+use reachtube_finding::Units;
 use reachtube_finding::{Report, Section, Table};
-use reachtube_robot::units::ColumnUnit;
 use reachtube_robot::{FrictionDescription, JointKind};
 use reachtube_scalar::number::significant;
 
@@ -43,8 +43,8 @@ impl Identification {
         self.description.joints.iter().map(|joint| joint.name.as_str())
     }
 
-    fn unit(&self, unit: fn(JointKind) -> &'static str) -> ColumnUnit {
-        ColumnUnit::new(&self.description.kinds(), unit)
+    fn unit(&self, unit: fn(JointKind) -> &'static str) -> Units {
+        JointKind::column(&self.description.kinds(), unit)
     }
 
     fn gravity_parts(&self) -> Parts {
@@ -93,7 +93,7 @@ impl Identification {
             own.map_or_else(JointKind::default, |joint| joint.kind)
         };
         let kinds: Vec<JointKind> = self.friction.iter().map(kind).collect();
-        let force = ColumnUnit::new(&kinds, JointKind::force_unit);
+        let force = JointKind::column(&kinds, JointKind::force_unit);
         let row = |name: &str, cell: &dyn Fn(usize, &FrictionFit) -> String| -> Vec<String> {
             let cells = self.friction.iter().enumerate().map(|(i, fit)| cell(i, fit));
             std::iter::once(name.to_string()).chain(cells).collect()

@@ -1,9 +1,11 @@
 //! Assembly of a page from a model and recordings.
 
+use reachtube_arm::ArmModel;
+use reachtube_arm::Equations;
 use reachtube_conform::Code;
 use reachtube_conform::Model;
 use reachtube_conform::model::Provenance;
-use reachtube_conform::settings::{Equations, States};
+use reachtube_conform::settings::States;
 use reachtube_finding::Finding;
 use reachtube_reach::Hyperrectangle;
 use reachtube_recordings::{Preparation, Torque};
@@ -26,14 +28,14 @@ use crate::suites::suite_figures;
 /// [`Error::NoReachableSet`](super::Error::NoReachableSet) for a suite without one.
 pub fn page(sources: &Sources) -> Result<Page> {
     let Sources { model, problem, check, .. } = *sources;
-    let figures = suite_figures(sources)?;
+    let (figures, arm) = (suite_figures(sources)?, model.arm());
     Ok(Page {
-        title: format!("{}: reachset conformance", model.drive.robot.name),
+        title: format!("{}: reachset conformance", arm.robot.name),
         subtitle: format!(
             "Model {} of order {}{}, {} in {}",
-            u32::from(model.settings.abstraction.model),
-            model.settings.abstraction.order,
-            match model.settings.equations {
+            u32::from(arm.settings.abstraction.model),
+            arm.settings.abstraction.order,
+            match arm.settings.equations {
                 Equations::Model => "",
                 Equations::Robot => " about nominal motions by the robot's own equations",
             },
@@ -97,7 +99,7 @@ fn sets_table(model: &Model) -> SetsTable {
     let bounds = |set: &Hyperrectangle, i: usize| <[f64; 2]>::from(set.bounds(i));
     let row = |joint: usize| JointSets {
         joint: joint_name(model, joint),
-        kind: model.drive.robot.joints[joint].kind,
+        kind: model.arm().robot.joints[joint].kind,
         x0_q: bounds(&model.initial_set, joint),
         x0_qd: bounds(&model.initial_set, n + joint),
         u: bounds(&model.input_set, joint),
@@ -134,6 +136,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         (None, Some(linearised)) => format!("{} (linearised {linearised:.6})", number(model.cost)),
         (None, None) => number(model.cost),
     };
+    let arm = model.arm();
     let volume = model.hull_volume.map_or_else(|| "none".into(), |volume| format!("{volume:.4e}"));
     let cost_name = format!("Cost {}", cost_unit(model));
     let samples_name = format!("Cost summed over samples, as in the paper {}", sum_unit(model));
@@ -151,8 +154,8 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("Weights [SI units]", word(&settings.weights)),
         ("Measurement noise [SI units]", word(&settings.noise)),
         ("Nominal motion starts at", word(settings.nominal)),
-        ("Nominal motion satisfies the equations of", word(settings.equations)),
-        ("Recorded torque", recorded_torque(settings.torque, model.preparation.as_ref())),
+        ("Nominal motion satisfies the equations of", word(arm.settings.equations)),
+        ("Recorded torque", recorded_torque(arm.settings.torque, model.preparation.as_ref())),
         ("Fitted to", format!("{runs} runs of suites {}", suites.join(", "))),
         ("SHA-256 of the data", model.data.sha256.clone()),
         ("Written by", model.tool.clone()),

@@ -1,6 +1,7 @@
 //! The pages about a model that was made of logs.
 
-use reachtube_conform::{Keep, Opened, Silent};
+use reachtube_arm::ArmModel;
+use reachtube_conform::{CheckJob, Keep, Opened, Silent};
 use reachtube_finding::FrontEnd;
 use reachtube_pipeline::Built;
 use reachtube_recordings::MemoryRuns;
@@ -71,7 +72,8 @@ pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
 }
 
 fn excerpt(built: &Built, runs: &MemoryRuns, which: &str) -> Result<Page> {
-    let job = built.answer.model.check(runs.clone()).keep(Keep::All);
+    let own = &built.answer.model;
+    let job = CheckJob::new(own.clone(), own.setup()?, runs.clone()).keep(Keep::All);
     let opened = job.open(&Silent)?;
     let (check, reach) = (opened.check()?, opened.reach()?);
     let Opened { model, problem, .. } = &opened;

@@ -1,5 +1,6 @@
 //! What the cost of the sets comes from: joints, runs and motions.
 
+use reachtube_arm::ArmModel;
 use reachtube_conform::Model;
 use reachtube_conform::next_motion::LeftOut;
 use reachtube_conform::settings::Weights;
@@ -24,7 +25,7 @@ pub(super) fn cost_unit(model: &Model) -> String {
 }
 
 pub(super) fn sum_unit(model: &Model) -> String {
-    let kinds = model.drive.robot.kinds();
+    let kinds = model.arm().robot.kinds();
     let is_shared = kinds.iter().all(|kind| *kind == kinds[0]);
     match &model.settings.weights {
         Weights::Unit if is_shared && !kinds.is_empty() => {
@@ -79,7 +80,7 @@ fn by_joint(model: &Model, figures: &[SuiteFigure]) -> Table {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share / all);
     let row = |joint: usize| {
         let (q, qd) = (shares[joint], shares[n + joint]);
-        vec![model.drive.robot.joints[joint].name.clone(), percent(q), percent(qd), percent(q + qd)]
+        vec![model.signals.parts[joint].name.clone(), percent(q), percent(qd), percent(q + qd)]
     };
     let rows = if all > 0.0 { (0..n).map(row).collect() } else { Vec::new() };
     Table::new(["Joint", "Position", "Velocity", "Both"], rows)

@@ -1,5 +1,6 @@
 //! The first lines of a page: the answer in numbers, and one figure of the widest set.
 
+use reachtube_arm::ArmModel;
 use reachtube_conform::plausibility::JointWidth;
 use reachtube_conform::{Model, SuiteReach};
 use reachtube_pipeline::{Built, HorizonWidths};
@@ -68,7 +69,7 @@ fn facts_of_sets(model: &Model) -> Vec<(String, String)> {
     let Some(said) = &model.usefulness else { return Vec::new() };
     let horizon = format!("{} s", significant(said.horizon, 3));
     let widest = said.worst().map(|(joint, _)| {
-        let kind = model.drive.robot.joints[joint].kind;
+        let kind = model.arm().robot.joints[joint].kind;
         ("Widest set".into(), words(&joint_name(model, joint), &said.joints[joint], kind))
     });
     [("Horizon".into(), horizon)].into_iter().chain(widest).collect()
@@ -206,7 +207,7 @@ fn over_time(sources: &Sources) -> Result<Option<(Chart, String)>> {
         "The widest set beside the motion, of {name}, in the longest suite: the reachable \
          set{with} (grey area), the nominal motion (grey line) and the recorded motion (blue)."
     );
-    let unit = model.drive.robot.joints[joint].kind.position_unit();
+    let unit = &model.signals.states[joint].unit;
     let title = format!("{name} in suite {suite}");
     let chart = Chart::new(title, "time [s]", format!("position [{unit}]"), series);
     Ok(Some((Chart { areas: vec![area], ..chart }, caption)))

@@ -1,5 +1,6 @@
 //! Phase planes: the reachable set in position and velocity of one joint.
 
+use reachtube_arm::ArmModel;
 use reachtube_conform::claim::PhasePlane;
 use reachtube_conform::{Model, Problem};
 use reachtube_robot::JointKind;
@@ -16,7 +17,7 @@ pub(super) fn phase_planes(problem: &Problem, model: &Model) -> Result<Vec<Chart
 }
 
 fn chart(plane: &PhasePlane, model: &Model) -> Chart {
-    let joint = &model.drive.robot.joints[plane.joint];
+    let joint = &model.arm().robot.joints[plane.joint];
     let kind: JointKind = joint.kind;
     let [[q_low, q_high], [v_low, v_high]] = plane.hull;
     let closed = |corners: &[[f64; 2]], colour| {

@@ -37,10 +37,6 @@ impl Sources<'_> {
 }
 
 pub(super) fn joint_name(model: &Model, joint: usize) -> String {
-    model
-        .drive
-        .robot
-        .joints
-        .get(joint)
-        .map_or_else(|| format!("{}", joint + 1), |description| description.name.clone())
+    let part = model.signals.parts.get(joint);
+    part.map_or_else(|| format!("{}", joint + 1), |part| part.name.clone())
 }

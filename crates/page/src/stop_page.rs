@@ -46,7 +46,7 @@ pub struct StopPage<'a> {
 /// Fails for numbers that cannot be drawn.
 pub fn stop_html(page: &StopPage) -> Result<String, Error> {
     let study = page.study;
-    let unit = JointKind::any_unit(&page.robot.kinds(), JointKind::position_unit);
+    let unit = JointKind::column(&page.robot.kinds(), JointKind::position_unit).any();
     let rows = study.annex_b.as_ref().map_or(&[][..], |table| &table.rows);
     let notes = study.annex_b.as_ref().map_or(&[][..], |table| &table.notes);
     let of = |category: u8| -> Vec<AnnexRow> {

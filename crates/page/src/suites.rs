@@ -1,5 +1,6 @@
 //! Assembly of the figures of the suites.
 
+use reachtube_arm::ArmModel;
 use reachtube_conform::data::Suite;
 use reachtube_conform::settings::States;
 use reachtube_conform::tube::Witness;
@@ -104,7 +105,7 @@ fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigur
     Ok(SuiteFigure {
         suite: name.clone(),
         joints: (0..joints).map(|joint| joint_name(model, joint)).collect(),
-        kinds: model.drive.robot.kinds(),
+        kinds: model.arm().robot.kinds(),
         times: longest.times.clone(),
         band,
         positions_only,

@@ -7,8 +7,8 @@ use super::terms::{self, Explained};
 use super::text::Text;
 use maud::{Markup, PreEscaped, html};
 use reachtube_conform::data::Side;
+use reachtube_finding::Units;
 use reachtube_robot::JointKind;
-use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::{column_decimals, outward, significant};
 
 /// The set X0: as HTML, and as a term.
@@ -22,7 +22,7 @@ struct Column {
     meaning: &'static str,
     /// The quantity.
     quantity: &'static str,
-    unit: ColumnUnit,
+    unit: Units,
     /// One interval per joint.
     intervals: Vec<Bounds>,
 }
@@ -52,7 +52,7 @@ fn columns(table: &SetsTable) -> Vec<Column> {
             set,
             meaning: terms::meaning(term),
             quantity,
-            unit: ColumnUnit::new(&kinds, unit),
+            unit: JointKind::column(&kinds, unit),
             intervals: table.joints.iter().map(pick).collect(),
         };
     let mut columns = vec![

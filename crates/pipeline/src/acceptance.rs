@@ -73,7 +73,7 @@ impl Built {
             }
             Some((joint, factor)) => format!(
                 "held-out motions need {factor:.1} times the set of {} (at most {} is accepted),",
-                self.answer.model.drive.robot.joints[joint].name,
+                self.answer.model.signals.parts[joint].name,
                 self.largest_growth()
             ),
         }

@@ -89,7 +89,7 @@ impl Widened {
     }
 
     pub(crate) fn words(&self) -> String {
-        let joints = &self.answer.model.drive.robot.joints;
+        let joints = &self.answer.model.signals.parts;
         let of_input = self.allowance.iter().skip(2 * joints.len()).copied().enumerate();
         match of_input.max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((joint, most)) => {
@@ -140,8 +140,9 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
 
 #[cfg(test)]
 mod tests {
-    use reachtube_conform::settings::{Equations, NominalStart};
-    use reachtube_conform::{Job, Noise, Settings, Silent};
+    use reachtube_arm::{ArmModel, ArmSettings, Equations, setup};
+    use reachtube_conform::settings::NominalStart;
+    use reachtube_conform::{Check, CheckJob, Job, Model, Noise, Settings, Silent};
     use reachtube_finding::Severity;
     use reachtube_recordings::{MemoryRuns, Run, Torque};
     use reachtube_robot::Robot;
@@ -178,11 +179,17 @@ mod tests {
             noise: Noise::Fitted,
             sensor_noise: Some(vec![1e-6; 2]),
             nominal: NominalStart::Own,
-            equations: Equations::Robot,
-            ..Settings::new(Torque::Compensated, 1)
+            ..Settings::default()
         };
-        let job = Job::new(robot.clone(), windows(robot, motions), Torque::Compensated);
-        job.settings(settings).run(&Silent).unwrap()
+        let arm =
+            ArmSettings { equations: Equations::Robot, ..ArmSettings::new(Torque::Compensated, 1) };
+        let setup = setup(robot.clone(), arm, settings).unwrap();
+        Job::new(setup, windows(robot, motions)).run(&Silent).unwrap()
+    }
+
+    fn check(model: &Model, runs: MemoryRuns) -> Check {
+        let job = CheckJob::new(model.clone(), model.setup().unwrap(), runs);
+        job.run(&Silent).unwrap()
     }
 
     #[test]
@@ -217,10 +224,10 @@ mod tests {
             let others: Vec<_> = (0..3).filter(|at| *at != left_out).map(|at| all[at]).collect();
             let own = || windows(&robot, &all[left_out..=left_out]);
             let smallest = answer(&robot, &others);
-            outside += usize::from(!smallest.model.check(own()).run(&Silent).unwrap().holds());
+            outside += usize::from(!check(&smallest.model, own()).holds());
             let wider = smallest.widened(allowance.clone()).unwrap();
             assert!(wider.holds());
-            let check = wider.model.check(own()).run(&Silent).unwrap();
+            let check = check(&wider.model, own());
             assert!(check.holds(), "{}: {:?}", all[left_out].0, check.verdict.violations);
         }
         assert!(outside > 0, "without the allowance some motion leaves the sets");

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use reachtube_conform::settings::Equations;
+use reachtube_arm::Equations;
 use reachtube_conform::{Answer, FitSettings, Group, Progress};
 use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{PrepareSettings, RawLog, check_window};
@@ -327,7 +327,7 @@ fn reason_of_horizon(chosen: &Longest, tried: &[HorizonWidths], largest: f64) ->
     let longer = tried.iter().find(|tried| tried.horizon > horizon);
     let longer = longer.map(|longer| ("some of the", longer));
     let longer = chosen.wide.last().map(|longer| ("all", longer)).or(longer);
-    let name = |joint: usize| &answer.model.drive.robot.joints[joint].name;
+    let name = |joint: usize| &answer.model.signals.parts[joint].name;
     let (joint, ratio) = answer.found.usefulness.worst().unwrap_or((0, f64::INFINITY));
     let mut words = format!("the widest set is {} of the motion ({})", percent(ratio), name(joint));
     if ratio > largest {

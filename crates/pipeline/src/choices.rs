@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use reachtube_conform::settings::Equations;
+use reachtube_arm::Equations;
 use reachtube_conform::{Group, Model};
 use reachtube_identify::prepare::PrepareSettings;
 use reachtube_recordings::{ColumnSettings, LogSettings, Torque};

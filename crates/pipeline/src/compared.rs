@@ -1,6 +1,7 @@
+use reachtube_arm::ArmModel;
 use std::collections::{BTreeMap, BTreeSet};
 
-use reachtube_conform::{Answer, Check, Silent};
+use reachtube_conform::{Answer, Check, CheckJob, Silent};
 use reachtube_finding::Finding;
 use reachtube_recordings::{MemoryRuns, RunSource};
 use schemars::JsonSchema;
@@ -108,7 +109,7 @@ impl HeldOut {
         horizon: f64,
         are_whole: bool,
     ) -> Result<(Self, BTreeSet<String>)> {
-        let n = answer.model.drive.robot.joints.len();
+        let n = answer.model.joints();
         let none = BTreeSet::new();
         let windows = match recordings.cut(horizon, usize::MAX) {
             Err(Error::NoWindow { .. }) => {
@@ -119,7 +120,8 @@ impl HeldOut {
         let count = windows.runs().len();
         let motions: BTreeSet<_> = windows.runs().iter().map(|run| run.motion.clone()).collect();
         let motions = are_whole.then_some(motions.len());
-        match answer.model.check(windows).run(&Silent) {
+        let model = &answer.model;
+        match CheckJob::new(model.clone(), model.setup()?, windows).run(&Silent) {
             Ok(check) => {
                 let verdict = &check.verdict;
                 let worst =

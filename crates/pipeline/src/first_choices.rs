@@ -1,6 +1,7 @@
 //! The choices that come before the robot: filter, expansion, and the noise of the sensors.
 
-use reachtube_conform::settings::{Equations, NominalStart};
+use reachtube_arm::Equations;
+use reachtube_conform::settings::NominalStart;
 use reachtube_identify::prepare::{PrepareSettings, RawLog, cut_off};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;

@@ -29,7 +29,7 @@ impl Built {
         let row = |(joint, width): (usize, &reachtube_conform::plausibility::JointWidth)| {
             let growth = self.held_out.growth[joint];
             JointRow {
-                name: model.drive.robot.joints[joint].name.clone(),
+                name: model.signals.parts[joint].name.clone(),
                 half_width: width.half_width,
                 displacement: width.displacement,
                 ratio: width.half_width.map(|_| width.ratio()),

@@ -1,3 +1,4 @@
+use reachtube_arm::ArmModel;
 use reachtube_conform::monitor::{Alarm, HealthyMotion, Leave, Monitor, Schedule};
 use reachtube_conform::{Error as ConformError, Model};
 use reachtube_identify::prepare::{LiveLog, VelocitySource};
@@ -30,7 +31,7 @@ impl LiveMonitor {
     /// As [`Monitor::new`] and [`LiveLog::new`].
     pub fn new(model: &Model, schedule: Schedule, velocity: VelocitySource) -> Result<Self> {
         let Schedule { step, longest_gap, .. } = schedule;
-        let monitor = Monitor::new(model, schedule)?;
+        let monitor = Monitor::new(model, model.setup()?, schedule)?;
         let log = match &model.preparation {
             None => None,
             Some(known) => {
@@ -55,7 +56,7 @@ impl LiveMonitor {
         runs: &dyn RunSource,
     ) -> Result<HealthyMotion> {
         let Some(known) = &model.preparation else {
-            return Ok(HealthyMotion::learn(model, schedule, runs)?);
+            return Ok(HealthyMotion::learn(model, model.setup()?, schedule, runs)?);
         };
         let Schedule { step, longest_gap, .. } = schedule;
         let robot = Robot::from_description(&model.robot())?;
@@ -72,7 +73,7 @@ impl LiveMonitor {
             let run = live_run(&mut log, &run).map_err(&wrong)?;
             prepared.push(&name, None, None, run);
         }
-        Ok(HealthyMotion::learn(model, schedule, &prepared)?)
+        Ok(HealthyMotion::learn(model, model.setup()?, schedule, &prepared)?)
     }
 
     /// Compares motion with healthy motion, too, as [`Monitor::watch`] does.

@@ -1,3 +1,4 @@
+use reachtube_arm::ArmModel;
 use std::path::{Path, PathBuf};
 
 use reachtube_conform::{CheckJob, Model, Setup};
@@ -64,7 +65,7 @@ pub fn prepared(
     };
     let raw = read_logs(paths, &robot, &settings)?;
     window.map_or(Ok(()), |window| check_window(window, &raw))?;
-    if let Some(warming) = model.drive.correction.as_ref().filter(|known| known.differs_by_run()) {
+    if let Some(warming) = model.arm().correction.as_ref().filter(|known| known.differs_by_run()) {
         let logs: Vec<&RawLog> = raw.iter().collect();
         if let Some(file) = unknown_warmth(&logs, warming.reference_temperatures.is_some()) {
             let value = format!("{}, for a model whose friction warms up", file.display());

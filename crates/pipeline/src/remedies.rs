@@ -1,6 +1,6 @@
 //! Choices that would make a model narrower, found by trying them.
 
-use reachtube_conform::settings::Equations;
+use reachtube_arm::Equations;
 use reachtube_conform::{FitSettings, Group};
 use reachtube_finding::Finding;
 use reachtube_identify::prepare::RawLog;

@@ -1,5 +1,6 @@
 //! The question of a scenario, as every front end asks it.
 
+use reachtube_arm::{ArmModel, OfArm, beyond_proof_of_stops};
 use reachtube_conform::{CheckJob, Keep, Model, Opened, Progress, Setup};
 use reachtube_finding::{Finding, Report};
 use reachtube_recordings::RunSource;
@@ -45,7 +46,7 @@ impl ScenarioJob {
     ///
     /// A model, robot or capsules that cannot be read; obstacles that are not possible.
     pub fn new(scenario: Scenario) -> Result<Self> {
-        let (model, setup) = Model::open(&scenario.model)?;
+        let (model, setup) = reachtube_arm::open(&scenario.model)?;
         Self::with_model(scenario, model, setup)
     }
 
@@ -163,7 +164,7 @@ impl Verified {
     pub fn warnings(&self) -> Vec<Finding> {
         let Opened { model, problem, .. } = &self.opened;
         let mut warnings = match self.motions.iter().any(|one| one.stops.is_some()) {
-            true => model.beyond_proof_of_stops(problem),
+            true => beyond_proof_of_stops(model, problem),
             false => model.beyond_proof(problem),
         };
         warnings.extend(links_without_capsule(&self.body, &self.scene));

@@ -1,7 +1,8 @@
 //! A conformance over windows, as every step of the pipeline uses it.
 
 use reachtube_abstraction::ExpansionPoint;
-use reachtube_conform::settings::{Equations, NominalStart};
+use reachtube_arm::{ArmSettings, Basis, Equations};
+use reachtube_conform::settings::NominalStart;
 use reachtube_conform::{Answer, FitSettings, Job, Noise, Problem, Progress, Settings};
 use reachtube_files::hex;
 use reachtube_recordings::{MemoryRuns, RunSource, Torque};
@@ -120,14 +121,17 @@ impl Trial<'_> {
     fn job(&self, windows: MemoryRuns) -> Result<Job> {
         let n = self.robot.joint_count();
         let settings = Settings {
-            expansion_point: ExpansionPoint::from_values(&self.expansion, n)?,
             noise: Noise::Fitted,
             sensor_noise: Some(self.sensor_noise.clone()),
             nominal: self.nominal,
-            equations: self.equations,
-            ..Settings::new(Torque::Compensated, n)
+            ..Settings::default()
         };
-        let job = Job::new(self.robot.clone(), windows, Torque::Compensated);
-        Ok(job.settings(settings).fit(self.fit.clone()))
+        let arm = ArmSettings {
+            expansion_point: ExpansionPoint::from_values(&self.expansion, n)?,
+            equations: self.equations,
+            ..ArmSettings::new(Torque::Compensated, n)
+        };
+        let setup = Basis::from(self.robot.clone()).setup(arm, settings)?;
+        Ok(Job::new(setup, windows).fit(self.fit.clone()))
     }
 }

@@ -1,15 +1,17 @@
 //! A virtual arm is recorded, its smallest sets are found on some motions and tried on others.
 
+use reachtube::arm::{ArmSettings, setup};
 use reachtube::campaign::{CampaignOptions, record};
 use reachtube::{
-    DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, Tube, check, conform,
+    DataSet, Keep, Model, Problem, Robot, Settings, Silent, Torque, Tube, check, conform,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let robot = Robot::lwa4p();
     let recorded = record(&robot, &CampaignOptions::demo(), folder.path(), &|_done, _total| ())?;
-    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
+    let arm = ArmSettings::new(Torque::Compensated, 6);
+    let setup = setup(robot, arm, Settings::default())?;
     let open = || DataSet::open(folder.path()).map(Box::new);
 
     let training =
@@ -29,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             witness.time,
             witness.state,
             witness.excess,
-            witness.state.kind.unit(model.drive.robot.joints[witness.state.joint].kind)
+            model.signals.unit(witness.state)
         );
     }
     Ok(())

@@ -1,18 +1,19 @@
 //! The report page of a virtual arm, written to the folder `reachtube-report`.
 
+use reachtube::arm::{ArmSettings, setup};
 use reachtube::campaign::{CampaignOptions, record};
 use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, Sources, page, write_html};
 use reachtube::{
-    Check, DataSet, Keep, Model, Problem, Robot, Settings, Setup, Silent, Torque, conform, reach,
-    write,
+    Check, DataSet, Keep, Model, Problem, Robot, Settings, Silent, Torque, conform, reach, write,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let robot = Robot::lwa4p();
     let recorded = record(&robot, &CampaignOptions::demo(), folder.path(), &|_done, _total| ())?;
-    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 6))?;
+    let arm = ArmSettings::new(Torque::Compensated, 6);
+    let setup = setup(robot, arm, Settings::default())?;
     let source = Box::new(DataSet::open(folder.path())?);
     let problem = Problem::read(setup, source, &recorded.training, Keep::All, &Silent)?;
     let found = conform(&problem, &Silent, None)?;

@@ -1,6 +1,7 @@
 //! The smallest uncertainty sets of a linear model for runs in memory.
 
-use reachtube::{Keep, MemoryRuns, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform};
+use reachtube::arm::{ArmSettings, setup};
+use reachtube::{Keep, MemoryRuns, Problem, Robot, Run, Settings, Silent, Torque, conform};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Five runs of one suite: the arm drifts from rest, a little differently each time.
@@ -18,7 +19,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let recorded = Run::new(6, times, states, torques)?;
         runs.push(&format!("run {run}"), Some("A"), Some("drift"), recorded);
     }
-    let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6))?;
+    let arm = ArmSettings::new(Torque::Compensated, 6);
+    let setup = setup(Robot::lwa4p(), arm, Settings::default())?;
     let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent)?;
     let found = conform(&problem, &Silent, None)?;
     println!("{}", found.verdict.claim);

@@ -6,6 +6,7 @@ pub mod prelude;
 pub use reachtube_abstraction::{
     self as abstraction, Abstraction, ExpansionPoint, ModelKind, PolynomialModel,
 };
+pub use reachtube_arm as arm;
 pub use reachtube_conform::{
     self as conform, Check, Conformance, Keep, Model, Problem, Progress, Settings, Setup, Silent,
     Tube, check, conform, reach,
@@ -24,6 +25,6 @@ pub use reachtube_reach::{
     TimeGrid, UncertainInput,
 };
 pub use reachtube_recordings::{self as recordings, DataSet, MemoryRuns, Run, RunSource, Torque};
-pub use reachtube_robot::{self as robot, Robot, units};
+pub use reachtube_robot::{self as robot, Robot};
 pub use reachtube_scalar::{self as scalar, number};
 pub use reachtube_verify as verify;

@@ -60,7 +60,7 @@ pub enum RobotError {
          q = {q:.4?} {}, but it must be positive; correct its inertial parameters or the \
          parameters of later links, or add the motor's armature",
         kind.inertia_unit().replace("^2", "²"),
-        JointKind::units(kinds, JointKind::position_unit)
+        JointKind::column(kinds, JointKind::position_unit).list()
     )]
     NotPhysical {
         /// The robot's name.

@@ -4,6 +4,7 @@ use crate::placement::{Placement, rotation_from_z, rotation_z, snapped_sin_cos};
 use core::f64::consts::{PI, TAU};
 use core::fmt;
 use nalgebra::Vector3;
+use reachtube_finding::Units;
 use reachtube_scalar::Elementary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -87,34 +88,10 @@ impl JointKind {
         }
     }
 
-    /// Returns the unit of a list of values, one per joint: the unit that all joints share, or else
-    /// the units in the order of the joints.
-    ///
-    /// # Examples
-    ///
-    /// ```
-    /// use reachtube_robot::JointKind::{self, Prismatic, Revolute};
-    ///
-    /// let units = |kinds: &[JointKind]| JointKind::units(kinds, JointKind::position_unit);
-    /// assert_eq!(units(&[Revolute, Revolute]), "rad");
-    /// assert_eq!(units(&[Revolute, Prismatic]), "(rad, m)");
-    /// ```
+    /// Returns the units of a list of values, one per joint.
     #[must_use]
-    pub fn units(kinds: &[Self], unit: fn(Self) -> &'static str) -> String {
-        let all: Vec<_> = kinds.iter().map(|kind| unit(*kind)).collect();
-        match all.first() {
-            Some(first) if all.iter().all(|unit| unit == first) => (*first).into(),
-            _ => format!("({})", all.join(", ")),
-        }
-    }
-
-    /// Returns the unit of a value of any of these joints, such as `rad` or `rad or m`.
-    #[must_use]
-    pub fn any_unit(kinds: &[Self], unit: fn(Self) -> &'static str) -> String {
-        let has = |kind: &Self| kinds.contains(kind);
-        let units: Vec<_> =
-            [Self::Revolute, Self::Prismatic].into_iter().filter(has).map(unit).collect();
-        units.join(" or ")
+    pub fn column(kinds: &[Self], unit: fn(Self) -> &'static str) -> Units {
+        Units::new(kinds.iter().map(|kind| unit(*kind)))
     }
 
     /// Returns the motion of a joint by q along or about a unit axis.

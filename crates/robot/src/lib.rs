@@ -37,7 +37,6 @@ mod robot;
 mod simulate;
 mod singular_values;
 mod text_file;
-pub mod units;
 mod urdf;
 mod warmth;
 mod workspace;

@@ -79,7 +79,7 @@ SETS = [
     ("a measurable disturbance, with the old cost", entry("settings.disturbance", "measurable"), 1),
     ("positions alone, with the old bound", entry("settings.states", "positions"), 2),
     ("own nominal starts", after(entry("settings.nominal", "own"), UNPRICED), 1),
-    ("torques of the motor", after(entry("settings.torque", "motor"), UNPRICED), 1),
+    ("torques of the motor", after(entry("drive.settings.torque", "motor"), UNPRICED), 1),
     ("all samples", after(entry("settings.until", None), UNPRICED), 1),
     ("half of the samples, with the old cost", entry("settings.until", 0.2), 1),
     ("half of the samples, without costs", after(entry("settings.until", 0.2), UNPRICED), 0),

@@ -98,7 +98,7 @@ def _model(content, text):
         initial_set=_box(content["initial_set"], 2 * n, "initial_set"),
         input_set=_box(content["input_set"], n, "input_set"),
         noise_radius=_noise(noise, n),
-        settings=content["settings"],
+        settings={**content["settings"], **drive["settings"]},
         correction=drive.get("correction"),
         robot=drive["robot"],
         suites=content["data"]["suites"],

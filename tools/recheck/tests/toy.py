@@ -30,11 +30,14 @@ CONTENT = {
     "initial_set": {"centre": [0.01, 0.0, 0.0, -0.02], "radius": [0.02, 0.01, 0.05, 0.04]},
     "input_set": {"centre": [0.1, 0.0], "radius": [0.5, 0.3]},
     "settings": {
-        "torque": "compensated", "disturbance": "sample", "states": "all", "nominal": "mean",
-        "centre": "free",
-        "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]},
+        "disturbance": "sample", "states": "all", "nominal": "mean", "centre": "free",
     },
-    "drive": {"robot": ROBOT},
+    "drive": {
+        "robot": ROBOT,
+        "settings": {
+            "torque": "compensated", "expansion_point": {"q": [0.0, 0.0], "qd": [0.0, 0.0]},
+        },
+    },
     "data": {"suites": []},
     "sha256": "",
 }
@@ -43,7 +46,9 @@ CONTENT = {
 def content(**changes):
     """Returns the content of the model file with some settings changed."""
     found = copy.deepcopy(CONTENT)
-    found["settings"].update(changes)
+    for key, value in changes.items():
+        owner = found["drive"] if key in found["drive"]["settings"] else found
+        owner["settings"][key] = value
     return found
 
 

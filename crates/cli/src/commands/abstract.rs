@@ -117,7 +117,7 @@ impl AbstractOutput {
 /// Returns the result of `abstract`, with one line per joint.
 fn summary(model: &PolynomialModel, seconds: f64) -> String {
     let point = model.expansion_point();
-    let unit = |unit| JointKind::units(model.joint_kinds(), unit);
+    let unit = |unit| JointKind::column(model.joint_kinds(), unit).list();
     let mut text = format!(
         "model {} of order {} of {}, expanded about {} {}, {} {}, {} {}\n\
          {} states, degree {}, {} terms, computed in {}\n\n",

@@ -48,7 +48,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&check)?;
     } else {
-        let report = check.report(&opened.model.drive.robot.kinds());
+        let report = check.report(&opened.model.signals);
         output::print_verdict(&report.to_string(), &outcome)?;
     }
     Ok(outcome)

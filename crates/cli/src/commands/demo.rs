@@ -1,5 +1,6 @@
 //! `reachtube demo`: every step on a simulated arm.
 
+use reachtube::arm::{ArmSettings, Basis};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -87,13 +88,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         folder.display()
     ));
     // The sets of the nominal model, calibrated by the held-out motions.
-    let settings = Settings {
-        calibrate: recorded.calibration.clone(),
-        ..Settings::new(Torque::Compensated, robot.joint_count())
-    };
+    let settings = Settings { calibrate: recorded.calibration.clone(), ..Settings::default() };
+    let arm = ArmSettings::new(Torque::Compensated, robot.joint_count());
     let bar = Progress::new();
-    let nominal = Job::new(robot, DataSet::open(&folder)?, Torque::Compensated)
-        .settings(settings)
+    let nominal = Job::new(Basis::from(robot).setup(arm, settings)?, DataSet::open(&folder)?)
         .suites(&recorded.training)
         .keep_runs(true)
         .read(&bar)?;
@@ -148,7 +146,7 @@ fn text(
     let heading = held_out_heading(recorded);
     let model = &opened.model;
     if global().verbose {
-        let report = held_out.report(&model.drive.robot.kinds());
+        let report = held_out.report(&model.signals);
         return format!("{}\n{heading}\n{report}", model.report());
     }
     let model = Summary { next: None, ..summary };

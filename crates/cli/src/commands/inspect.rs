@@ -19,8 +19,8 @@ use crate::output;
 use crate::progress::Progress;
 use crate::table::table;
 use crate::understood::understood;
+use reachtube::finding::Units;
 use reachtube::number::{four_decimals, plural};
-use reachtube::units::ColumnUnit;
 use reachtube_robot::JointKind;
 
 const HELP: &str = "\
@@ -193,7 +193,7 @@ fn samples(group: &RunGroup) -> String {
 
 fn joint_table(group: &RunGroup, kinds: &[JointKind]) -> String {
     let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
-    let units = units.map(|unit| ColumnUnit::new(kinds, unit));
+    let units = units.map(|unit| JointKind::column(kinds, unit));
     let warm = group.joints.iter().any(|joint| joint.temperature.is_some());
     let [q, qd, tau] = [units[0].head("q"), units[1].head("|qd|"), units[2].head("|tau|")];
     let mut header = vec!["joint", &q, &qd, &tau, "start", "end", "drift", "sticks", "q - int qd"];
@@ -212,7 +212,7 @@ fn temperature(joint: &JointSummary) -> String {
 }
 
 /// Returns a table row about a joint (from 0). `units` has the units of q, q̇ and τ.
-fn joint_row(index: usize, joint: &JointSummary, units: &[ColumnUnit; 3]) -> Vec<String> {
+fn joint_row(index: usize, joint: &JointSummary, units: &[Units; 3]) -> Vec<String> {
     let [q, qd, tau] = units;
     vec![
         (index + 1).to_string(),

@@ -21,7 +21,6 @@ use crate::output;
 use crate::report_files;
 use crate::table::table;
 use reachtube::number::{at_least, four_decimals};
-use reachtube_robot::JointKind;
 
 const HELP: &str = "\
 Example:
@@ -140,9 +139,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
             provenance: &check.provenance,
         })?;
     } else {
-        let kinds = model.drive.robot.kinds();
-        let q = JointKind::any_unit(&kinds, JointKind::position_unit);
-        let qd = JointKind::any_unit(&kinds, JointKind::velocity_unit);
+        let [q, qd] = [0, 1].map(|at| model.signals.units_of_state(at).any());
         let [q, qd] = [format!("widest q [{q}]"), format!("widest qd [{qd}]")];
         let header = ["suite", "run", "samples", &q, &qd, "file"];
         let rows: Vec<_> = written.iter().map(Written::row).collect();
@@ -160,7 +157,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Returns the name of a joint that may come to rest.
 fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
-    &model.drive.robot.joints[rest.joint - 1].name
+    &model.signals.parts[rest.joint - 1].name
 }
 
 impl<'a> RestOutput<'a> {

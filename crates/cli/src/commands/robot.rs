@@ -14,8 +14,8 @@ use crate::lock_arguments::LockArguments;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::table::table;
+use reachtube::finding::Units;
 use reachtube::number::{fixed, plural, six_digits};
-use reachtube::units::ColumnUnit;
 
 const HELP: &str = "\
 Example:
@@ -69,7 +69,7 @@ pub(crate) fn show(args: &ShowArguments, json: bool) -> Result<Outcome> {
     let robot = args.lock.load(&args.robot)?;
     let joints = robot.joint_count();
     if !args.expansion.is_empty() && args.expansion.len() != joints {
-        let unit = JointKind::units(&robot.kinds(), JointKind::position_unit);
+        let unit = JointKind::column(&robot.kinds(), JointKind::position_unit).list();
         let given = args.expansion.len();
         return Err(Error::setting(format!(
             "--expansion lists {given}; give {joints} positions in {unit}, one per joint"
@@ -110,7 +110,7 @@ fn driving_friction(joint: &Joint) -> Option<String> {
 fn description(robot: &Robot) -> String {
     let [gx, gy, gz] = robot.gravity_acceleration();
     let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::inertia_unit];
-    let units = units.map(|unit| ColumnUnit::new(&robot.kinds(), unit));
+    let units = units.map(|unit| JointKind::column(&robot.kinds(), unit));
     let [limits, speed, inertia] = &units;
     let joint_header = [
         "joint",
@@ -171,15 +171,15 @@ fn dynamics(robot: &Robot, q: &[f64], mass: &DMatrix<f64>) -> String {
     let rows: String = mass.row_iter().map(|row| line(&mut row.iter())).collect();
     format!(
         "\nM(q_a) with motors [{}], q_a = {q:?} {}:\n{rows}g(q_a) [{}]:\n{}",
-        ColumnUnit::new(&kinds, JointKind::inertia_unit).shared().unwrap_or("kg m^2, kg m, kg"),
-        JointKind::units(&kinds, JointKind::position_unit),
-        JointKind::units(&kinds, JointKind::force_unit).trim_matches(['(', ')']),
+        JointKind::column(&kinds, JointKind::inertia_unit).shared().unwrap_or("kg m^2, kg m, kg"),
+        JointKind::column(&kinds, JointKind::position_unit).list(),
+        JointKind::column(&kinds, JointKind::force_unit).list().trim_matches(['(', ')']),
         line(&mut robot.gravity_torque(q).iter())
     )
 }
 
 /// Returns a table row about a joint. `units` has the units of limits, speed and motor inertia.
-fn joint_row(joint: &Joint, units: &[(&ColumnUnit, usize); 3]) -> Vec<String> {
+fn joint_row(joint: &Joint, units: &[(&Units, usize); 3]) -> Vec<String> {
     let with_unit = |k: usize, text: String| units[k].0.cell(units[k].1, text);
     let viscous = &joint.friction.viscous;
     vec![
@@ -237,7 +237,7 @@ fn physicality_sentence(physicality: &Physicality, robot: &Robot) -> String {
         Physicality::Links { least_pivot } => format!(
             "physical: the mass matrix is positive definite everywhere, proved link by link; \
              no joint has less than {least_pivot:.3e} {}",
-            JointKind::any_unit(&robot.kinds(), JointKind::inertia_unit)
+            JointKind::column(&robot.kinds(), JointKind::inertia_unit).any()
         ),
         Physicality::Searched { positions, joint, pivot, q } => format!(
             "no sign of an unphysical robot: the mass matrix is positive definite at {positions} \

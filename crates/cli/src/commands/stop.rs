@@ -1,5 +1,6 @@
 //! `reachtube stop`: how far a robot moves after a stop.
 
+use reachtube::arm::{OfArm, beyond_proof_of_stops};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -76,7 +77,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let category = Category::numbered(args.category, &brakes, &origin, &sets.input_set)?;
     let recorded = args.stops.as_ref().map(DataSet::open).transpose()?;
     opened.print_notes(&args.model.data);
-    let warnings = &opened.model.beyond_proof_of_stops(&opened.problem);
+    let warnings = &beyond_proof_of_stops(&opened.model, &opened.problem);
     warnings.iter().for_each(|warning| output::warn(&warning.text));
     let question = StopQuestion {
         brakes: &brakes,
@@ -100,7 +101,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if json {
         output::print_json(&study)?;
     } else {
-        let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
+        let unit = JointKind::column(&robot.kinds(), JointKind::position_unit).any();
         output::print_verdict(&study.text(&unit), &outcome)?;
     }
     Ok(outcome)

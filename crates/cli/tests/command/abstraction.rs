@@ -50,7 +50,7 @@ fn files_fit_the_schema_and_conform_takes_them() {
             ))
             .exits(0)
             .json();
-        assert_eq!(found["settings"]["abstraction"], json!({"model": model, "order": 1}));
+        assert_eq!(found["drive"]["settings"]["abstraction"], json!({"model": model, "order": 1}));
         assert!(
             (found["cost"].as_f64().unwrap() / usual["cost"].as_f64().unwrap() - 1.0).abs() < 1e-9
         );

@@ -232,7 +232,7 @@ fn a_horizon_cuts_logs_for_conform_and_for_what_follows() {
     let preparation = &model["preparation"];
     assert_eq!((&preparation["window"], &preparation["torque"]), (&0.2.into(), &"motor".into()));
     assert!(preparation["cut_off"].as_f64().unwrap() > 1.0, "{preparation}");
-    assert_eq!(model["settings"]["torque"], "compensated");
+    assert_eq!(model["drive"]["settings"]["torque"], "compensated");
     let check = lab.run("check --model model.json --data logs --torque motor --json").exits(0);
     let check = json(&check.stdout);
     assert_eq!((&check["conformant"], &check["rows"]), (&true.into(), &model["proof"]["rows"]));

@@ -11,7 +11,10 @@ use crate::fixture::{Lab, Run, cell, set_cell, text_of};
 #[track_caller]
 pub(crate) fn names_what_it_is_of(verdict: &Value, model: &Value, folder: Option<&Lab>) {
     let settings = &verdict["settings"];
-    assert!(settings["notion"].is_string() && settings["torque"].is_string(), "{verdict}");
+    assert!(settings["notion"].is_string(), "{verdict}");
+    let driven_by = verdict.get("driven_by").unwrap_or(&verdict["drive"]["settings"]);
+    assert_eq!(driven_by["torque"], model["drive"]["settings"]["torque"], "{verdict}");
+    assert!(driven_by["torque"].is_string(), "{verdict}");
     assert!(verdict["tool"].as_str().unwrap().starts_with("reachtube "), "{verdict}");
     let sha256 = verdict.get("model_sha256").unwrap_or(&verdict["sha256"]);
     assert_eq!(sha256, &model["sha256"]);

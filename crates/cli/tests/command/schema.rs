@@ -76,7 +76,7 @@ fn the_schema_refuses_what_the_program_refuses() {
         ),
         (set("/cost", json!(null)), "it has no cost"),
         (set("/input_set/radius/0", json!(-0.1)), "input_set or noise_set"),
-        (set("/settings/torque", json!("raw")), "unknown variant `raw`"),
+        (set("/drive/settings/torque", json!("raw")), "unknown variant `raw`"),
         (more, "unknown field `more`"),
         (less, "it has no cost"),
     ] {
@@ -100,7 +100,7 @@ fn a_changed_part_is_refused() {
         ),
         ("/drive/robot/joint/0/armature", json!(-1.5), "armature = -1.5 is negative"),
         ("/a/2", json!([0.0]), "has not the size for the 2 joints"),
-        ("/settings/expansion_point/q", json!([0.0]), "expansion point"),
+        ("/drive/settings/expansion_point/q", json!([0.0]), "expansion point"),
         ("/data/suites/0/runs/0/sha256", json!("0".repeat(64)), "data.sha256"),
         ("/verified", json!(false), "verified does not agree with proof"),
         ("/proof/violations/count", json!(1), "verified does not agree with proof"),

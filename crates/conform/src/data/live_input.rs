@@ -3,7 +3,7 @@ use std::fmt::Debug;
 use reachtube_recordings::Sample;
 
 /// Evaluates the inputs of samples that become known one by one, without allocation.
-pub(crate) trait LiveInput: Debug + Send + Sync {
+pub trait LiveInput: Debug + Send + Sync {
     /// Takes the next sample.
     fn take(&mut self, sample: &Sample);
 

@@ -11,7 +11,6 @@ pub(crate) mod marks;
 mod notes;
 pub(crate) mod notion;
 pub(crate) mod origin;
-pub(crate) mod part;
 pub(crate) mod problem;
 pub(crate) mod recordings;
 pub(crate) mod runaway;
@@ -20,6 +19,7 @@ pub mod settings;
 pub(crate) mod setup;
 pub(crate) mod shape;
 pub(crate) mod side;
+pub(crate) mod signals;
 mod stored;
 mod subset;
 pub(crate) mod suite;
@@ -27,12 +27,16 @@ pub(crate) mod summary;
 pub(crate) mod totals;
 pub(crate) mod tree;
 
-pub use crate::arm::{DriveRecord, InputCorrection, JointCorrection};
 pub use case::Case;
 pub use condition::Condition;
 pub use envelope::Envelope;
 pub use input::RunInput;
+pub use live_input::LiveInput;
 pub use sensor_noise::SensorNoise;
+pub use setup::{
+    Asked, Compensation, Drive, DryFriction, FreeParameter, Near, Parameters, Residual, Torques,
+};
 pub use side::Side;
+pub use signals::{Part, Signal, Signals};
 pub use suite::Suite;
 pub use summary::RunSummary;

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::data::part::Part;
+use crate::data::signals::Part;
 
 /// In which directions recordings must lie in the reachable set (docs/method.md, correction C).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]

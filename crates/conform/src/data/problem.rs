@@ -9,13 +9,13 @@ use crate::data::case::Case;
 use crate::data::kept::KeptRuns;
 use crate::data::notes::recording_notes;
 use crate::data::origin::Origin;
-use crate::data::part::Part;
 use crate::data::recordings::Recordings;
 use crate::data::runaway::Runaway;
 use crate::data::sensor_noise::SensorNoise;
 use crate::data::settings::Settings;
 use crate::data::setup::{Setup, read_options};
 use crate::data::shape::Shape;
+use crate::data::signals::{Part, Signals};
 use crate::data::suite::SuiteReader;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -35,28 +35,6 @@ pub enum Keep {
 /// A problem: a model, settings and recordings, which are read once and folded into what the steps
 /// need. [`conform`](crate::conform), [`check`](crate::check()) and [`reach`](crate::reach())
 /// take it.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
-/// use reachtube_recordings::{MemoryRuns, Run, Torque};
-/// use reachtube_robot::Robot;
-///
-/// // Two runs of the arm at rest, a little apart.
-/// let mut runs = MemoryRuns::default();
-/// for offset in [0.0, 0.001] {
-///     let states = [vec![offset; 6], vec![0.0; 6]].concat().repeat(3);
-///     let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18])?;
-///     runs.push(&format!("run{offset}"), Some("A"), None, run);
-/// }
-/// let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6))?;
-/// let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent)?;
-/// let found = conform(&problem, &Silent, None)?;
-/// assert!(found.verdict.conformant);
-/// assert!((found.sets.initial_set.radius[0] - 0.0005).abs() < 1e-6);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct Problem {
     setup: Setup,
@@ -193,9 +171,15 @@ impl Problem {
         Shape { states: self.dynamics().states(), inputs: self.dynamics().inputs() }
     }
 
+    /// Returns what the numbers of the model are.
+    #[must_use]
+    pub fn signals(&self) -> &Signals {
+        self.setup.drive.signals()
+    }
+
     /// Returns the parts of the system, whose states are looked at together.
     pub(crate) fn parts(&self) -> &[Part] {
-        self.setup.drive.parts()
+        &self.signals().parts
     }
 
     /// Returns the states of each kind, such as all positions: the first states of all parts, then
@@ -227,12 +211,6 @@ impl Problem {
         samples.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (envelope, k)| {
             [low.min(envelope.lower(k, i)), high.max(envelope.upper(k, i))]
         })
-    }
-
-    /// Returns the highest recorded speed of a joint, rad/s.
-    pub(crate) fn highest_speed(&self, joint: usize) -> f64 {
-        let [low, high] = self.recorded_bounds(self.joints() + joint);
-        high.max(-low)
     }
 
     /// Returns whether a recording of the source is marked as simulated.

@@ -2,9 +2,8 @@
 
 use std::ops::RangeInclusive;
 
-use reachtube_abstraction::{Abstraction, ExpansionPoint, PolynomialModel};
 use reachtube_reach::Disturbance;
-use reachtube_recordings::{GapLimit, Torque};
+use reachtube_recordings::GapLimit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -106,18 +105,6 @@ pub enum NominalStart {
     Own,
 }
 
-/// Whose equations of motion the nominal motions satisfy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Equations {
-    /// The model's: U covers the model error.
-    #[default]
-    Model,
-    /// The robot's own (docs/method.md, section 3). The model, which is linear, describes the
-    /// deviations from that motion only.
-    Robot,
-}
-
 /// The measurement noise: a set V of the measured state, centred at 0, that is added to the
 /// reachable set where runs are compared with it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -155,16 +142,11 @@ impl Weights {
     }
 }
 
-/// Everything that decides a conformance result besides robot and recordings.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// Everything that decides a conformance result besides recordings and what drives the model along
+/// them.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// The kind of the recorded torques.
-    pub torque: Torque,
-    /// Which of the paper's models.
-    pub abstraction: Abstraction,
-    /// Where the model is expanded.
-    pub expansion_point: ExpansionPoint,
     /// How the sets are found.
     #[serde(default)]
     pub method: Method,
@@ -195,9 +177,6 @@ pub struct Settings {
     pub sensor_noise: Option<Vec<f64>>,
     /// Where nominal motions start.
     pub nominal: NominalStart,
-    /// Whose equations of motion nominal motions satisfy.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub equations: Equations,
     /// The motions that are held out from the fit and then calibrate its sets. They are not
     /// looked at but by [`conform`](crate::conform).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -211,58 +190,9 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Returns the defaults for a robot of `joints` joints whose recordings hold `torque`.
-    pub fn new(torque: Torque, joints: usize) -> Self {
-        Self {
-            torque,
-            abstraction: Abstraction::default(),
-            expansion_point: ExpansionPoint::zero(joints),
-            method: Method::default(),
-            disturbance: Disturbance::default(),
-            centre: Centre::default(),
-            notion: Notion::default(),
-            states: States::default(),
-            initial_limit: InitialLimit::default(),
-            stiction: false,
-            weights: Weights::default(),
-            noise: Noise::default(),
-            sensor_noise: None,
-            nominal: NominalStart::default(),
-            equations: Equations::default(),
-            calibrate: Vec::new(),
-            until: None,
-            gap_limit: GapLimit::default(),
-        }
-    }
-
     /// Returns whether the noise of the sensors limits V or X0.
     pub(crate) fn are_limited_by_noise(&self) -> bool {
         self.noise == Noise::Fitted || self.nominal == NominalStart::Own
-    }
-
-    /// Checks that U can cover stiction, where it is to.
-    fn check_stiction(&self) -> Result<()> {
-        match (self.torque, self.disturbance) {
-            _ if !self.stiction => Ok(()),
-            (Torque::Link, _) => Err(Error::Stiction(
-                "torques that are measured at the links have no friction of the joints; leave the \
-                 setting out",
-            )),
-            (_, Disturbance::Constant) => Err(Error::Stiction(
-                "friction changes during a motion, and a constant disturbance does not; let it \
-                 change at each sample",
-            )),
-            _ => Ok(()),
-        }
-    }
-
-    /// Takes model and expansion point from an abstraction.
-    pub(crate) fn with_abstraction(self, model: &PolynomialModel) -> Self {
-        Self {
-            abstraction: Abstraction { model: model.kind(), order: model.order() },
-            expansion_point: model.expansion_point().clone(),
-            ..self
-        }
     }
 
     /// Checks sizes and signs for a robot of `joints` joints.
@@ -272,7 +202,12 @@ impl Settings {
     /// [`Error::SettingCount`] and [`Error::SettingRange`], which name the setting, its value and
     /// what it may be; [`Error::Stiction`] if stiction cannot be covered.
     pub fn validate(&self, joints: usize) -> Result<()> {
-        self.check_stiction()?;
+        if self.stiction && self.disturbance == Disturbance::Constant {
+            return Err(Error::Stiction(
+                "friction changes during a motion, and a constant disturbance does not; let it \
+                 change at each sample",
+            ));
+        }
         if let Weights::Given(weights) = &self.weights {
             check_list("weight", weights, (2 * joints, STATES), 1e-9..=1e9)?;
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use reachtube_reach::System;
-use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run};
+use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run, Sample};
 use reachtube_scalar::Interval;
 
 use crate::data::case::Case;
@@ -13,11 +13,12 @@ use crate::data::condition::Condition;
 use crate::data::input::RunInput;
 use crate::data::live_input::LiveInput;
 use crate::data::notion::Notion;
-use crate::data::part::Part;
-use crate::data::settings::Settings;
-use crate::error::Result;
+use crate::data::settings::{Method, Settings};
+use crate::data::signals::Signals;
+use crate::error::{Error, Result};
 use crate::fit::group::Group;
 use crate::fit::record::FittedParameter;
+use crate::plausibility::warning::{Remark, Warning, WarningKind};
 
 /// What decides a conformance besides the recordings: what drives a system along them, the system
 /// and the settings.
@@ -41,7 +42,7 @@ pub struct Setup {
 ///
 /// The inputs of a recording are computed when it is read. What else is taken off them depends on
 /// the nominal motion: a [`Compensation`] evaluates it along that motion.
-pub(crate) trait Drive: Debug + Send + Sync {
+pub trait Drive: Debug + Send + Sync {
     /// Returns the sample times of a recording and the input along it, in a condition if one is
     /// given.
     ///
@@ -63,8 +64,8 @@ pub(crate) trait Drive: Debug + Send + Sync {
     /// Returns what evaluates the inputs of samples that are `step` \[s\] apart.
     fn live_input(&self, step: f64) -> Box<dyn LiveInput>;
 
-    /// Returns the parts of the system, whose states are looked at together.
-    fn parts(&self) -> &[Part];
+    /// Returns what the numbers of the model are.
+    fn signals(&self) -> &Signals;
 
     /// Returns what finds how far dry friction of the inputs may differ between states; `None`
     /// where the inputs have none.
@@ -133,18 +134,42 @@ pub(crate) trait Drive: Debug + Send + Sync {
     /// Returns the parameters of the drive and the system that a fit moves.
     fn parameters(&self, setup: &Setup, asked: &Asked) -> Box<dyn Parameters>;
 
+    /// Returns what is remarkable of a kind about the parameters of a part (from 0), beside the
+    /// lowest and the highest recorded value of states, which `recorded` returns.
+    fn remark(
+        &self,
+        kind: WarningKind,
+        part: usize,
+        recorded: &dyn Fn(usize) -> [f64; 2],
+    ) -> Option<Remark>;
+
+    /// Returns what most likely makes an answer about these recordings implausible, whose sets a
+    /// method found; `held_out` is a cause that is known, if any.
+    fn cause(&self, runs: Vec<Run>, method: Method, held_out: Option<Warning>) -> Option<Warning>;
+
+    /// Returns what computes the torque that motions at even steps \[s\] do not account for.
+    ///
+    /// # Errors
+    ///
+    /// Parameters that do not allow it.
+    fn residual(&self, step: f64) -> Result<Box<dyn Residual>>;
+
+    /// Returns the record of itself and of the system in a model file, which a
+    /// [`Loader`](crate::model::Loader) reads.
+    fn record(&self, system: &System) -> serde_json::Value;
+
     /// Returns the type that implements it.
     fn any(&self) -> &dyn Any;
 }
 
 /// What is taken off the inputs along one nominal motion.
-pub(crate) trait Compensation: Debug + Send + Sync {
+pub trait Compensation: Debug + Send + Sync {
     /// Takes it off the input `u` (m) of sample `k`, where the nominal state is `x` (N).
     fn apply(&mut self, k: usize, x: &[f64], u: &mut [f64]);
 }
 
 /// How far the dry friction of inputs may differ between the states in a box.
-pub(crate) trait DryFriction {
+pub trait DryFriction {
     /// Hands to `visit`, for each input whose friction may differ between two states of a box (N):
     /// its index, the largest difference, and whether the part that it drives may rest.
     ///
@@ -154,12 +179,37 @@ pub(crate) trait DryFriction {
     fn spread(&mut self, states: &[Interval], visit: &mut dyn FnMut(usize, f64, bool));
 }
 
+/// Computes the torque that a motion does not account for, without allocation.
+pub trait Residual: Debug + Send + Sync {
+    /// Takes a sample with its input (m); returns whether there are enough of them.
+    fn take(&mut self, sample: &Sample, input: &[f64]) -> bool;
+
+    /// Forgets all samples.
+    fn clear(&mut self);
+
+    /// Returns what was computed last.
+    fn torques(&self) -> &Torques;
+}
+
+/// What a [`Residual`] computes, for each joint.
+#[derive(Debug, Clone, Default)]
+pub struct Torques {
+    /// Velocities in the middle of the time, n.
+    pub speed: Vec<f64>,
+    /// The torque, n, N m.
+    pub torque: Vec<f64>,
+    /// The motor torque times the sine and the cosine of the motor's angle, n each, N m.
+    pub ripple: [Vec<f64>; 2],
+    /// The torque of the weight of 1 kg at the tip, n, N m.
+    pub weight: Vec<f64>,
+}
+
 /// What compensations near one motion share.
-pub(crate) type Near = Arc<dyn Any + Send + Sync>;
+pub type Near = Arc<dyn Any + Send + Sync>;
 
 /// What a fit asks parameters for.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Asked<'a> {
+pub struct Asked<'a> {
     /// The groups of parameters.
     pub groups: &'a [Group],
     /// The lowest and the highest recorded value of each state, N.
@@ -172,7 +222,7 @@ pub(crate) struct Asked<'a> {
 
 /// The parameters of a fit, and the model that they give. The number 0 of a parameter stands for
 /// its identified value.
-pub(crate) trait Parameters: Debug + Send + Sync {
+pub trait Parameters: Debug + Send + Sync {
     /// Returns the parameters.
     fn list(&self) -> &[FreeParameter];
 
@@ -212,7 +262,7 @@ pub(crate) trait Parameters: Debug + Send + Sync {
 
 /// One number that a fit moves.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FreeParameter {
+pub struct FreeParameter {
     /// Its group.
     pub group: Group,
     /// Its kind: parameters of a kind are moved together first.
@@ -225,24 +275,59 @@ pub(crate) struct FreeParameter {
 
 impl dyn Parameters + '_ {
     /// Returns the number of parameters.
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.list().len()
     }
 
     /// Returns the parameters that are in none of the groups `held`.
-    pub(crate) fn except(&self, held: &[Group]) -> Vec<usize> {
+    pub fn except(&self, held: &[Group]) -> Vec<usize> {
         let list = self.list().iter().enumerate();
         list.filter(|(_, own)| !held.contains(&own.group)).map(|(p, _)| p).collect()
     }
 
     /// Returns the groups that have parameters.
-    pub(crate) fn groups(&self) -> Vec<Group> {
+    pub fn groups(&self) -> Vec<Group> {
         let has = |group: &Group| self.list().iter().any(|own| own.group == *group);
         Group::ALL.into_iter().filter(has).collect()
     }
 }
 
 impl Setup {
+    /// Makes the setup of a system and of what drives it.
+    ///
+    /// # Errors
+    ///
+    /// Settings that do not fit them.
+    pub fn new(drive: Arc<dyn Drive>, dynamics: System, settings: Settings) -> Result<Self> {
+        settings.validate(dynamics.inputs())?;
+        if settings.stiction && drive.dry_friction().is_none() {
+            return Err(Error::Stiction(
+                "torques that are measured at the links have no friction of the joints; leave the \
+                 setting out",
+            ));
+        }
+        Ok(Self { drive, dynamics, settings, nominal_starts: BTreeMap::new(), condition: None })
+    }
+
+    /// Returns the setup of another system and drive, with the same settings and nominal starts.
+    #[must_use]
+    pub fn with_drive(&self, drive: Arc<dyn Drive>, dynamics: System) -> Self {
+        Self { drive, dynamics, ..self.clone() }
+    }
+
+    /// Returns the same setup with another way to find the sets.
+    #[must_use]
+    pub fn with_method(mut self, method: Method) -> Self {
+        self.settings.method = method;
+        self
+    }
+
+    /// Returns what drives the system.
+    #[must_use]
+    pub fn drive(&self) -> &dyn Drive {
+        &*self.drive
+    }
+
     /// Returns the model of the motion.
     #[must_use]
     pub fn dynamics(&self) -> &System {

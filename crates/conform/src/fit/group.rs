@@ -28,7 +28,7 @@ pub enum Group {
 
 impl Group {
     /// All groups.
-    pub(crate) const ALL: [Self; 6] =
+    pub const ALL: [Self; 6] =
         [Self::Inertia, Self::Viscous, Self::Cubic, Self::Coulomb, Self::WarmUp, Self::Payload];
 
     /// Returns the name of the group, as users write it.

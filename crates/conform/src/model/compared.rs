@@ -7,7 +7,7 @@ use crate::model::file::Model;
 
 impl Fold {
     /// Returns the fold of no recording, to check `model`; `setup` is the one that
-    /// [`Model::open`] returned with it. The fold counts the recordings that the model was fitted
+    /// its loader returned with it. The fold counts the recordings that the model was fitted
     /// to, where the model file lists them. Folds merge where they check the same model.
     ///
     /// # Errors

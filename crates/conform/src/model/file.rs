@@ -3,25 +3,26 @@
 
 use std::collections::HashSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use reachtube_files::{json, write};
-use reachtube_reach::{Hyperrectangle, LinearSystem};
+use reachtube_reach::{Hyperrectangle, LinearSystem, System};
 use reachtube_recordings::Preparation;
-use reachtube_robot::RobotDescription;
 use schemars::JsonSchema;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::arm::record::DriveRecord;
 use crate::claim::verdict::Verdict;
 use crate::conformance::Conformance;
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
 use crate::data::sensor_noise::SensorNoise;
 use crate::data::settings::Settings;
-use crate::data::setup::Setup;
+use crate::data::setup::{Drive, Setup};
+use crate::data::signals::Signals;
 use crate::error::{Error, Result};
 use crate::fit::record::FitRecord;
 use crate::model::records::DataRecord;
@@ -43,11 +44,20 @@ pub(crate) const FORMAT: &str = "reachtube-model";
 /// what `reachtube man --schema model` prints.
 pub(crate) const VERSION: u32 = 4;
 
-const REMEDY: &str = "give a file that `model` or `conform` wrote, such as arm/model.json";
-
 /// Number of tight values kept in a file at most: as many as a degenerate program may have would
 /// make it unreadable.
 pub(crate) const MOST_TIGHT: usize = 500;
+
+/// Makes what drives a model again from its file.
+pub trait Loader {
+    /// Returns the drive that wrote the record in a model file, and the system bit by bit as the
+    /// file has it.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the record.
+    fn load(&self, model: &Model) -> Result<(Arc<dyn Drive>, System), String>;
+}
 
 /// A model with the uncertainty sets for which it is reachset conformant with the recordings named
 /// in it. SI units; states are ordered q then q̇.
@@ -158,8 +168,11 @@ pub struct Model {
     /// d of ẋ = A x + B u + d, 2n; zero about q̇ = 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drift: Vec<f64>,
-    /// What drives the system: the robot, and the polynomials of a model that is not linear.
-    pub drive: DriveRecord,
+    /// What its numbers are.
+    pub signals: Signals,
+    /// What drives the system, as it wrote itself down: a robot, and the polynomials of a model
+    /// that is not linear.
+    pub drive: Value,
     /// SHA-256 of the recordings that the drive was identified from or fitted to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub seen: Vec<String>,
@@ -219,7 +232,8 @@ impl Model {
             a: matrix(LinearSystem::a),
             b: matrix(LinearSystem::b),
             drift: linear.map_or_else(Vec::new, |system| system.drift().iter().copied().collect()),
-            drive: DriveRecord::new(problem.setup().arm(), dynamics),
+            signals: problem.signals().clone(),
+            drive: problem.setup().drive.record(dynamics),
             seen: problem.setup().drive.seen().to_vec(),
             data: DataRecord::new(problem),
             findings: IgnoredAny,
@@ -228,23 +242,14 @@ impl Model {
         .sealed()
     }
 
-    /// Reads a model file, checks that its parts fit together, and returns what a problem with
-    /// other recordings needs of it: the robot, the model bit by bit as the file has it, and the
-    /// settings.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::File`], or [`Error::ModelFile`], which says what is wrong.
-    pub fn open(path: &Path) -> Result<(Self, Setup)> {
-        Self::parse(&reachtube_files::read_text(path, REMEDY)?, path)
-    }
-
-    /// Reads the text of a model file as [`open`](Self::open) does; errors name it `origin`.
+    /// Reads the text of a model file, checks that its parts fit together, and returns what a
+    /// problem with other recordings needs of it: the drive, the system bit by bit as the file has
+    /// it, and the settings. Errors name the file `origin`.
     ///
     /// # Errors
     ///
     /// [`Error::ModelFile`], which says what is wrong.
-    pub fn parse(text: &str, origin: &Path) -> Result<(Self, Setup)> {
+    pub fn parse(text: &str, origin: &Path, loader: &dyn Loader) -> Result<(Self, Setup)> {
         let wrong = |problem: String| Error::ModelFile { path: origin.into(), problem };
         let value = json::versioned(text, FORMAT, VERSION, "conform").map_err(wrong)?;
         let model: Self = serde_json::from_value(value).map_err(|error| {
@@ -252,18 +257,18 @@ impl Model {
                 "{error}; give the file as `conform --out` wrote it, or run conform again"
             ))
         })?;
-        let setup = model.check_sizes().and_then(|()| model.check_parts()).map_err(wrong)?;
+        let setup = model.checked_setup(loader).map_err(wrong)?;
         Ok((model, setup))
     }
 
-    /// Returns what a problem with other recordings needs of the model, as [`open`](Self::open).
+    /// Returns what a problem with other recordings needs of the model, as [`parse`](Self::parse).
     ///
     /// # Errors
     ///
     /// [`Error::ModelFile`] for a model whose parts contradict each other.
-    pub(crate) fn setup(&self) -> Result<Setup> {
+    pub fn loaded(&self, loader: &dyn Loader) -> Result<Setup> {
         let wrong = |problem| Error::ModelFile { path: "the model".into(), problem };
-        self.check_parts().map_err(wrong)
+        self.checked_setup(loader).map_err(wrong)
     }
 
     /// Writes the model file. A file that exists is replaced.
@@ -335,14 +340,6 @@ impl Model {
     pub fn gap_of_not_minimal(&self) -> Option<f64> {
         let largest = self.settings.notion.largest_gap();
         self.optimality_gap.filter(|gap| *gap > largest)
-    }
-
-    /// Returns the robot, identified from all recordings that it or a fit of it has seen.
-    #[must_use]
-    pub fn robot(&self) -> RobotDescription {
-        let mut robot = self.drive.robot.clone();
-        robot.add_identified_from(self.seen.iter().cloned());
-        robot
     }
 
     /// Returns the number of joints n.

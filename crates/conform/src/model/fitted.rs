@@ -20,10 +20,10 @@ impl Model {
         if record.taken && !self.a.is_empty() && !self.left_out.is_empty() {
             self.left_out = record.leave_one_out.iter().map(LeftOut::from).collect();
         }
-        let seen = self.fitted_runs();
-        let mut robot = self.robot();
-        robot.add_identified_from(seen);
-        self.seen = robot.identified_from;
+        self.seen.extend(self.fitted_runs());
+        self.seen.retain(|sha256| !sha256.is_empty());
+        self.seen.sort();
+        self.seen.dedup();
         Self { fit: Some(record), ..self }.sealed()
     }
 

@@ -12,6 +12,6 @@ mod usefulness;
 mod validity;
 
 pub use crate::search::found::SearchSummary;
-pub use file::Model;
+pub use file::{Loader, Model};
 pub use provenance::Provenance;
 pub use records::{DataRecord, RunRecord, SuiteRecord};

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use serde_json::Value;
+
 use crate::data::problem::Problem;
 use crate::data::settings::Settings;
 use crate::model::file::Model;
@@ -17,6 +19,9 @@ pub struct Provenance {
     pub model_sha256: String,
     /// The settings in force. Notion and end of the recordings may be others than the model's.
     pub settings: Settings,
+    /// The settings of what drives the model, where its record has some.
+    #[serde(default, skip_serializing_if = "Value::is_null")]
+    pub driven_by: Value,
     /// The recordings.
     pub data: DataRecord,
 }
@@ -36,6 +41,7 @@ impl Model {
 
     fn provenance_of(&self, settings: Settings, data: DataRecord) -> Provenance {
         let model_sha256 = self.sha256.clone();
-        Provenance { tool: reachtube_files::TOOL, model_sha256, settings, data }
+        let driven_by = self.drive.get("settings").cloned().unwrap_or_default();
+        Provenance { tool: reachtube_files::TOOL, model_sha256, settings, driven_by, data }
     }
 }

@@ -1,16 +1,12 @@
 //! Whether the parts of a model file fit together.
 
 use nalgebra::{DMatrix, DVector};
-use reachtube_abstraction::PolynomialModel;
 use reachtube_reach::{Hyperrectangle, LinearSystem, System};
-use reachtube_robot::Robot;
 
-use crate::arm::arm::Arm;
-use crate::arm::system::{system, system_of};
 use crate::claim::verdict::SuiteVerdict;
-use crate::data::settings::{Settings, check_allowance};
+use crate::data::settings::check_allowance;
 use crate::data::setup::Setup;
-use crate::model::file::Model;
+use crate::model::file::{Loader, Model};
 use crate::model::records::SuiteRecord;
 
 /// Relative difference up to which numbers that were computed twice count as the same.
@@ -18,8 +14,8 @@ const SAME: f64 = 1e-9;
 
 impl Model {
     /// Checks that all lists have the sizes that the robot asks for.
-    pub(super) fn check_sizes(&self) -> Result<(), String> {
-        let n = self.drive.robot.joints.len();
+    fn check_sizes(&self) -> Result<(), String> {
+        let n = self.signals.inputs.len();
         let is = |matrix: &[Vec<f64>], columns: usize| {
             matrix.len() == 2 * n && matrix.iter().all(|row| row.len() == columns)
         };
@@ -29,13 +25,12 @@ impl Model {
         let are_wider = self.calibration.is_some() || !self.allowance.is_empty();
         let lower_bound = self.cost_lower_bound.or(are_wider.then_some(0.0));
         let costs = [self.cost, lower_bound, self.cost_paper, self.hull_volume];
-        let is_linear = self.drive.acceleration.is_empty();
+        let is_linear = !self.a.is_empty();
         let linear = is(&self.a, 2 * n) && is(&self.b, n) && self.drift.len() == 2 * n;
         let none = self.a.is_empty() && self.b.is_empty() && self.drift.is_empty();
         let sets = set(&self.initial_set, 2 * n)
             && set(&self.input_set, n)
             && self.noise_set.as_ref().is_none_or(|noise| set(noise, 2 * n));
-        let point = &self.settings.expansion_point;
         let problem = if is_linear && costs.contains(&None) {
             "it has no cost, cost_lower_bound, cost_paper or hull_volume, as every linear model \
              does"
@@ -47,8 +42,6 @@ impl Model {
                 "initial_set, input_set or noise_set has not the size for the {n} joints of its \
                  robot, or a negative radius"
             )
-        } else if point.q.len() != n || point.qd.len() != n {
-            format!("its expansion point is not one of {n} joints")
         } else if self.data.suites.iter().any(|suite| !suite.fits(n)) {
             format!(
                 "a nominal_start is not a state of {n} joints, or the runs of a suite are neither \
@@ -58,8 +51,6 @@ impl Model {
             format!("its allowance is not {} radii", 3 * n)
         } else if self.stiction.iter().any(|rest| !(1..=n).contains(&rest.joint)) {
             format!("its stiction names a joint that is not one of {n}")
-        } else if self.drive.correction.as_ref().is_some_and(|c| !c.is_valid_for(n)) {
-            format!("its correction is not one of {n} joints")
         } else {
             return self.settings.validate(n).map_err(|error| error.to_string());
         };
@@ -67,8 +58,13 @@ impl Model {
     }
 
     /// Checks that what is in the file twice is the same: if it is not, a part was changed. Returns
-    /// the robot, its model and the settings.
-    pub(super) fn check_parts(&self) -> Result<Setup, String> {
+    /// the drive, its system and the settings.
+    ///
+    /// # Errors
+    ///
+    /// What speaks against the file.
+    pub(super) fn checked_setup(&self, loader: &dyn Loader) -> Result<Setup, String> {
+        self.check_sizes()?;
         if self.data.sha256 != self.data.digest() {
             return Err(changed("data.sha256 does not match the recordings it lists"));
         }
@@ -78,34 +74,30 @@ impl Model {
         if self.verified != holds || holds && !all_hold {
             return Err(changed("verified does not agree with proof"));
         }
-        let robot = Robot::from_description(&self.robot()).map_err(|error| error.to_string())?;
-        let dynamics = self.dynamics(&robot)?;
+        let (drive, made) = loader.load(self)?;
+        let dynamics = self.dynamics(made)?;
         if self.sha256 != self.digest() {
             return Err(changed("sha256 does not match the content"));
         }
+        if *drive.signals() != self.signals {
+            return Err(changed("signals does not agree with drive"));
+        }
         let start = |suite: &SuiteRecord| Some((suite.name.clone(), suite.nominal_start.clone()?));
         let nominal_starts = self.data.suites.iter().filter_map(start).collect();
-        let arm = Arm::new(robot, self.drive.correction.clone(), &self.settings);
-        Ok(Setup { nominal_starts, ..Setup::of_arm(arm, dynamics, self.settings.clone()) })
+        let settings = self.settings.clone();
+        Ok(Setup { drive, dynamics, settings, nominal_starts, condition: None })
     }
 
-    /// Returns the model bit by bit as the file has it, or what speaks against it.
-    fn dynamics(&self, robot: &Robot) -> Result<System, String> {
-        let Settings { abstraction, expansion_point, method, .. } = &self.settings;
+    /// Returns the system bit by bit as the file has it, or what speaks against it; `made` is the
+    /// one that the drive makes.
+    fn dynamics(&self, made: System) -> Result<System, String> {
         let mismatch =
             || changed("it has not the matrices or polynomials that its settings ask for");
-        if let Some(records) = self.drive.polynomials() {
-            let model =
-                PolynomialModel::from_records(robot, *abstraction, expansion_point, records)
-                    .map_err(|error| error.to_string())?;
-            let dynamics = system_of(model, *method);
-            return match dynamics.linear_system() {
-                None => Ok(dynamics),
-                Some(_) => Err(mismatch()),
-            };
-        }
-        let made = system(robot, &self.settings).map_err(|error| error.to_string())?;
-        let expected = made.linear_system().ok_or_else(mismatch)?;
+        let expected = match (made.linear_system(), self.a.is_empty()) {
+            (None, true) => return Ok(made),
+            (Some(expected), false) => expected,
+            _ => return Err(mismatch()),
+        };
         let drift = DVector::from_vec(self.drift.clone());
         let own = LinearSystem::new(matrix(&self.a), matrix(&self.b), drift)
             .map_err(|error| error.to_string())?;

@@ -1,7 +1,7 @@
-use reachtube_robot::JointKind;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::data::signals::Signals;
 use crate::result::code::Code;
 use reachtube_finding::{Finding, Severity};
 
@@ -39,14 +39,17 @@ pub struct Alarm {
 }
 
 impl Alarm {
-    /// Returns the alarm as a finding; `joint` has the name and the kind of its joint.
+    /// Returns the alarm as a finding about a model with these signals.
     #[must_use]
-    pub fn finding(&self, joint: Option<(&str, JointKind)>) -> Finding {
+    pub fn finding(&self, signals: &Signals) -> Finding {
         let Self { time, value, range: [low, high], .. } = *self;
-        let (name, kind) = joint.unwrap_or(("the arm", JointKind::Revolute));
+        let of = |joint: usize| {
+            (signals.parts[joint - 1].name.as_str(), signals.inputs[joint - 1].unit.as_str())
+        };
+        let (name, unit) = self.joint.map_or(("the arm", "N m"), of);
         let (what, unit) = match self.fault {
-            Fault::Push => (format!("a sudden torque acts on {name}"), kind.force_unit()),
-            Fault::Drag => (format!("{name} drags"), kind.force_unit()),
+            Fault::Push => (format!("a sudden torque acts on {name}"), unit),
+            Fault::Drag => (format!("{name} drags"), unit),
             Fault::Payload => ("the payload is not the model's".into(), "kg"),
         };
         let text = format!(

@@ -2,8 +2,8 @@
 
 use reachtube_recordings::Sample;
 
+use crate::data::setup::Residual;
 use crate::monitor::alarm::{Alarm, Fault};
-use crate::monitor::residual::Residual;
 use crate::monitor::statistics::{Range, Shape, Statistics};
 
 /// What is done with the samples of a motion.
@@ -26,13 +26,13 @@ pub(crate) enum Task {
 /// The numbers that faults change, and what is done with them.
 #[derive(Debug)]
 pub(crate) struct FaultWatch {
-    residual: Residual,
+    residual: Box<dyn Residual>,
     statistics: Statistics,
     pub task: Task,
 }
 
 impl FaultWatch {
-    pub(crate) fn new(residual: Residual, shape: Shape, step: f64, task: Task) -> Self {
+    pub(crate) fn new(residual: Box<dyn Residual>, shape: Shape, step: f64, task: Task) -> Self {
         Self { residual, statistics: Statistics::new(shape, step), task }
     }
 
@@ -51,6 +51,7 @@ impl FaultWatch {
         if !residual.take(sample, u) {
             return;
         }
+        let residual = residual.torques();
         statistics.take(residual);
         match task {
             Task::Speeds { squares, count } => {

@@ -1,25 +1,26 @@
 //! The findings of a monitor.
 
-use reachtube_robot::JointKind;
 use reachtube_scalar::number::counted;
 
 use crate::data::side::Side;
+use crate::data::signals::Signals;
 use crate::monitor::leave::Leave;
 use crate::monitor::monitor::Totals;
 use crate::result::code::Code;
 use reachtube_finding::{Finding, Severity};
 
 impl Leave {
-    /// Returns the value as a finding about a joint of a name and a kind.
+    /// Returns the value as a finding about a model with these signals.
     #[must_use]
-    pub fn finding(&self, name: &str, kind: JointKind) -> Finding {
+    pub fn finding(&self, signals: &Signals) -> Finding {
+        let name = &signals.parts[self.joint - 1].name;
         let Self { time, window, state, excess, .. } = self;
         let side = match self.side {
             Side::Upper => "above",
             Side::Lower => "below",
         };
         let rounding = if self.proved { "" } else { ", within rounding" };
-        let unit = state.kind.unit(kind.recorded_units());
+        let unit = signals.unit(*state);
         let text = format!(
             "{time:.4} s: {name} left its set: {state} is {excess:.2e} {unit} {side} \
              it{rounding}, in the window from {window:.4} s"

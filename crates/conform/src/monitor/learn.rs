@@ -2,6 +2,7 @@
 
 use reachtube_recordings::{ReadOptions, RunSource};
 
+use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::model::file::Model;
 use crate::monitor::fault_watch::{FaultWatch, Task};
@@ -18,18 +19,24 @@ const GATE: f64 = 1.0 / 3.0;
 const AT_REST: f64 = 1e-3;
 
 impl HealthyMotion {
-    /// Learns from recordings at a schedule's times. They are read four times, one by one.
+    /// Learns from recordings at a schedule's times, for a model with its setup. They are read four
+    /// times, one by one.
     ///
     /// # Errors
     ///
     /// [`Error::TooFewHealthy`] for less than two recordings, [`Error::Healthy`] for a recording
     /// that cannot be used, and the errors of [`Monitor::new`].
-    pub fn learn(model: &Model, schedule: Schedule, runs: &dyn RunSource) -> Result<Self> {
+    pub fn learn(
+        model: &Model,
+        setup: Setup,
+        schedule: Schedule,
+        runs: &dyn RunSource,
+    ) -> Result<Self> {
         let count = runs.runs().len();
         if count < 2 {
             return Err(Error::TooFewHealthy { count });
         }
-        let mut monitor = Monitor::new(model, schedule)?;
+        let mut monitor = Monitor::new(model, setup, schedule)?;
         let n = model.joints();
         let shape = Shape { gate: vec![0.0; n], ripple: vec![[0.0; 2]; n], load: 1.0 };
         let mut lesson = |first: usize, shape: &Shape, task: Task| -> Result<FaultWatch> {

@@ -9,7 +9,6 @@ mod leave;
 #[expect(clippy::module_inception, reason = "the folder and its main type share the noun")]
 mod monitor;
 mod nominal;
-mod residual;
 mod schedule;
 mod statistics;
 mod window;

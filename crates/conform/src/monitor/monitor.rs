@@ -14,7 +14,6 @@ use crate::monitor::fault_watch::{FaultWatch, Task};
 use crate::monitor::healthy::HealthyMotion;
 use crate::monitor::leave::Leave;
 use crate::monitor::nominal::LiveNominal;
-use crate::monitor::residual::Residual;
 use crate::monitor::schedule::Schedule;
 use crate::monitor::statistics::Shape;
 use crate::monitor::window::{Sets, Window};
@@ -39,33 +38,6 @@ const DRIFT_WEIGHT: f64 = 1.0 / 16.0;
 /// as they are in double precision. That also disproves the notions phase-plane and exact,
 /// whose sets lie in the hull. Values at times between samples are interpolated and carry what
 /// that changes.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_conform::monitor::{Monitor, Schedule};
-/// use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent, conform};
-/// use reachtube_recordings::{MemoryRuns, Run, Torque};
-/// use reachtube_robot::Robot;
-///
-/// // Two runs of the arm at rest, a little apart.
-/// let mut runs = MemoryRuns::default();
-/// for offset in [0.0, 0.001] {
-///     let states = [vec![offset; 6], vec![0.0; 6]].concat().repeat(3);
-///     let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18])?;
-///     runs.push(&format!("run{offset}"), Some("A"), None, run);
-/// }
-/// let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6))?;
-/// let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent)?;
-/// let model = Model::new(&problem, &conform(&problem, &Silent, None)?);
-///
-/// let mut monitor = Monitor::new(&model, Schedule::new(&model, 0.004))?;
-/// assert!(monitor.push(0.0, &[0.1; 6], &[0.0; 6], &[0.0; 6])?.is_empty());
-/// // The arm jumps.
-/// let left = monitor.push(0.004, &[0.2; 6], &[0.0; 6], &[0.0; 6])?;
-/// assert!(left[0].proved && left[0].joint == 1 && left[0].excess > 0.09);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct Monitor {
     even: EvenSamples,
@@ -124,15 +96,14 @@ struct Progress {
 }
 
 impl Monitor {
-    /// Makes the monitor of a model.
+    /// Makes the monitor of a model with its setup.
     ///
     /// # Errors
     ///
     /// [`Error::NotLinear`] for a model whose sets cannot be computed ahead of its motion,
     /// [`Error::SettingRange`] for a schedule that is not possible, and when the solution of the
     /// system cannot be enclosed over a window.
-    pub fn new(model: &Model, schedule: Schedule) -> Result<Self> {
-        let setup = model.setup()?;
+    pub fn new(model: &Model, setup: Setup, schedule: Schedule) -> Result<Self> {
         let [steps, every] = schedule.steps()?;
         let system = setup.dynamics().linear_system().ok_or(Error::NotLinear)?;
         let (n, settings, step) = (model.joints(), setup.settings(), schedule.step);
@@ -235,7 +206,7 @@ impl Monitor {
 
     fn begin_task(&mut self, shape: Shape, task: Task) -> Result<()> {
         let step = self.step();
-        let residual = Residual::new(self.setup.robot(), self.setup.settings.torque, step)?;
+        let residual = self.setup.drive.residual(step)?;
         self.judge.faults = Some(FaultWatch::new(residual, shape, step, task));
         Ok(())
     }

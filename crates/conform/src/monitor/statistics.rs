@@ -1,6 +1,6 @@
 //! Numbers that faults change: sudden torques, drags of joints and a payload.
 
-use crate::monitor::residual::Residual;
+use crate::data::setup::Torques;
 
 /// Time over which a sudden torque is compared with the torque before it, s.
 const BEFORE: f64 = 0.1;
@@ -79,7 +79,7 @@ impl Statistics {
     }
 
     /// Takes the torques of a sample.
-    pub(crate) fn take(&mut self, residual: &Residual) {
+    pub(crate) fn take(&mut self, residual: &Torques) {
         let n = self.moved.len();
         let part = self.step / MEMORY;
         self.payload.iter_mut().for_each(|sum| *sum *= 1.0 - part);

@@ -75,7 +75,9 @@ impl WarningKind {
 }
 
 /// What is remarked of one joint.
-pub(crate) struct Remark {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remark {
+    /// The kind of remark.
     pub kind: WarningKind,
     /// The joint, from 1.
     pub joint: usize,

@@ -1,12 +1,11 @@
 use reachtube_recordings::State;
-use reachtube_robot::JointKind;
 
 use crate::data::problem::Problem;
 use crate::data::settings::NominalStart;
+use crate::data::signals::Signals;
 use crate::error::Result;
 use crate::next_motion::calibration::Calibration;
 use crate::plausibility::causes::likely_cause;
-use crate::plausibility::friction::{beyond_fitted, falling};
 use crate::plausibility::nominal_fit::NominalFit;
 use crate::plausibility::warning::{Remark, Warning, WarningKind};
 use crate::sets::UncertaintySets;
@@ -50,9 +49,11 @@ pub(crate) fn warnings(
         (0..2 * n).flat_map(|i| of_state(problem, sets, radii.get(i), fit, i)).collect();
     remarks.extend((0..n).filter_map(|joint| of_input(problem, sets, fit, joint)));
     remarks.extend((0..n).filter_map(|joint| offset(problem, sets, fit, joint)));
-    remarks.extend(zeros(&problem.robot().kinds(), sets, input_error));
-    remarks.extend((0..n).filter_map(|joint| beyond_fitted(problem, joint)));
-    remarks.extend((0..n).filter_map(|joint| falling(problem, joint)));
+    remarks.extend(zeros(problem.signals(), sets, input_error));
+    let drive = &problem.setup().drive;
+    for kind in [WarningKind::FrictionRange, WarningKind::FallingFriction] {
+        remarks.extend((0..n).filter_map(|joint| drive.remark(kind, joint, &|i| fit.recorded[i])));
+    }
     let of_kind = |kind: WarningKind| {
         let of: Vec<&Remark> = remarks.iter().filter(|remark| remark.kind == kind).collect();
         (!of.is_empty()).then(|| Warning::of_remarks(kind, &of))
@@ -60,9 +61,19 @@ pub(crate) fn warnings(
     let mut found: Vec<Warning> = WarningKind::OF_JOINTS.into_iter().filter_map(of_kind).collect();
     if found.iter().any(|warning| warning.kind.has_cause()) {
         let cause = likely_cause(problem, calibration)?;
-        found.extend(cause.as_ref().map(Warning::from));
+        found.extend(cause);
     }
     Ok(found)
+}
+
+/// Returns a warning where the recordings of a problem are faster than the recordings that friction
+/// was fitted to.
+pub(crate) fn friction_warning(problem: &Problem) -> Option<Warning> {
+    let recorded = |i| problem.recorded_bounds(i);
+    let of = |part| problem.setup().drive.remark(WarningKind::FrictionRange, part, &recorded);
+    let remarks: Vec<Remark> = (0..problem.parts().len()).filter_map(of).collect();
+    let all: Vec<&Remark> = remarks.iter().collect();
+    (!all.is_empty()).then(|| Warning::of_remarks(WarningKind::FrictionRange, &all))
 }
 
 /// Returns what is remarkable about state `i`.
@@ -74,7 +85,7 @@ fn of_state(
     i: usize,
 ) -> Vec<Remark> {
     let state = State::from_index(i, problem.joints());
-    let unit = state.kind.unit(problem.robot().kinds()[state.joint].recorded_units());
+    let unit = problem.signals().unit(state);
     let [low, high] = fit.recorded[i];
     let (range, sensor) = (high - low, problem.sensor_noise().radius[i]);
     let (from, to) = sets.initial_set.bounds(i);
@@ -129,7 +140,7 @@ fn of_input(
             "joint {} {} {}, {}",
             joint + 1,
             short(reach),
-            problem.robot().kinds()[joint].force_unit(),
+            problem.signals().inputs[joint].unit,
             short(largest)
         ),
     })
@@ -153,7 +164,7 @@ fn offset(
             joint + 1,
             if centre < 0.0 { "-" } else { "" },
             short(centre.abs()),
-            problem.robot().kinds()[joint].force_unit(),
+            problem.signals().inputs[joint].unit,
             short(0.5 * (high - low))
         ),
     })
@@ -161,7 +172,7 @@ fn offset(
 
 /// Returns remarks on joints whose U is 0 beside their input error, if U of another joint is many
 /// times its own error.
-fn zeros(kinds: &[JointKind], sets: &UncertaintySets, input_error: &[f64]) -> Vec<Remark> {
+fn zeros(signals: &Signals, sets: &UncertaintySets, input_error: &[f64]) -> Vec<Remark> {
     let reach = |joint: usize| {
         let (low, high) = sets.input_set.bounds(joint);
         high.max(-low)
@@ -176,7 +187,7 @@ fn zeros(kinds: &[JointKind], sets: &UncertaintySets, input_error: &[f64]) -> Ve
             "joint {} {} {}, {}",
             joint + 1,
             short(reach(joint)),
-            kinds[joint].force_unit(),
+            signals.inputs[joint].unit,
             short(*error)
         ),
     };
@@ -197,14 +208,17 @@ mod tests {
     use reachtube_reach::Hyperrectangle;
 
     use super::*;
+    use crate::data::signals::Signal;
 
     #[test]
     fn a_set_of_0_is_remarked_if_another_joint_covers_its_error() {
+        let input = Signal { name: "tau".into(), unit: "N m".into() };
+        let signals = Signals { inputs: vec![input; 2], ..Signals::default() };
         let zeros_of = |radius: [f64; 2]| -> Vec<usize> {
             let set = |radius: Vec<f64>| Hyperrectangle { centre: vec![0.0; 2], radius };
             let (initial_set, input_set) = (set(vec![0.0; 2]), set(radius.to_vec()));
             let sets = UncertaintySets { initial_set, input_set, noise_set: None };
-            let remarks = zeros(&[JointKind::Revolute; 2], &sets, &[0.1, 0.2]);
+            let remarks = zeros(&signals, &sets, &[0.1, 0.2]);
             assert!(remarks.iter().all(|remark| remark.kind == WarningKind::InputSetZero));
             remarks.iter().map(|remark| remark.joint).collect()
         };

@@ -168,7 +168,6 @@ mod tests {
     use std::sync::Arc;
 
     use reachtube_reach::Hyperrectangle;
-    use reachtube_recordings::Torque;
 
     use super::*;
     use crate::data::settings::Settings;
@@ -187,7 +186,7 @@ mod tests {
             envelope.include(0, &[0.0, 0.0, 0.5 * end, end]);
             let coefficients = Arc::new(coefficients.clone());
             let block = Block { times: vec![0.0, 1.0], coefficients, envelope };
-            let settings = Settings::new(Torque::Compensated, 1);
+            let settings = Settings::default();
             let shape = Shape { states: 2, inputs: 1 };
             let program = Program::new((&settings, shape), &[1.0; 2], vec![block]);
             let set = |centre, radius| Hyperrectangle { centre, radius };

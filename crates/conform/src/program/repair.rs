@@ -60,7 +60,6 @@ mod tests {
     use std::sync::Arc;
 
     use reachtube_reach::Hyperrectangle;
-    use reachtube_recordings::Torque;
 
     use crate::data::envelope::Envelope;
     use crate::data::settings::Settings;
@@ -80,7 +79,7 @@ mod tests {
         let mut envelope = Envelope::new(2);
         envelope.include(0, &[0.0, 0.0, 1.0, 1.0]);
         let block = Block { times: vec![0.0, 1.0], coefficients: Arc::new(coefficients), envelope };
-        let settings = Settings::new(Torque::Compensated, 1);
+        let settings = Settings::default();
         let shape = Shape { states: 2, inputs: 1 };
         let limits = Limits { noise: None, start: Some(vec![1e-9; 2]) };
         let program = Program::new((&settings, shape), &[1.0; 2], vec![block]).with_limits(limits);

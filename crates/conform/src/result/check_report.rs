@@ -1,17 +1,16 @@
 //! The report of a check.
 
-use reachtube_robot::JointKind;
-
 use crate::check::Check;
 use crate::claim::verdict::SuiteVerdict;
+use crate::data::signals::Signals;
 use crate::result::code::Code;
 use crate::result::findings;
 use reachtube_finding::{Finding, Report, Section, Table};
 
 impl Check {
-    /// Returns the answer for people, with one row for each suite; `kinds` belong to the joints.
+    /// Returns the answer for people, with one row for each suite; `signals` are the model's.
     #[must_use]
-    pub fn report(&self, kinds: &[JointKind]) -> Report {
+    pub fn report(&self, signals: &Signals) -> Report {
         let of = |codes: &[Code]| -> Vec<Finding> {
             let is_of = |finding: &&Finding| {
                 Code::of(&finding.code).is_some_and(|code| codes.contains(&code))
@@ -27,7 +26,7 @@ impl Check {
         first.findings.extend(furthest.cloned());
         let mut suites: Vec<&SuiteVerdict> = self.verdict.suites.iter().collect();
         suites.sort_by_key(|suite| !suite.fails());
-        let rows = suites.into_iter().map(|suite| row(suite, kinds)).collect();
+        let rows = suites.into_iter().map(|suite| row(suite, signals)).collect();
         let header = ["suite", "runs", "rows", "outside", "furthest outside"];
         let suites = Section { tables: vec![Table::new(header, rows)], ..Section::default() };
         let others = [
@@ -43,13 +42,13 @@ impl Check {
     }
 }
 
-fn row(suite: &SuiteVerdict, kinds: &[JointKind]) -> Vec<String> {
+fn row(suite: &SuiteVerdict, signals: &Signals) -> Vec<String> {
     let worst = suite.violations.worst.as_ref();
     vec![
         suite.suite.clone(),
         suite.runs.to_string(),
         suite.rows.to_string(),
         suite.violations.count.to_string(),
-        worst.map_or_else(|| "-".into(), |place| findings::place_outside(place, kinds)),
+        worst.map_or_else(|| "-".into(), |place| findings::place_outside(place, signals)),
     ]
 }

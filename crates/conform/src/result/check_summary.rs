@@ -1,10 +1,10 @@
 //! The summary of a check: the verdict, the suites that leave the sets, and what follows.
 
-use reachtube_robot::JointKind;
 use reachtube_scalar::number::{counted, two_digits_up};
 
 use crate::check::Check;
 use crate::claim::verdict::{SuiteVerdict, Verdict};
+use crate::data::signals::Signals;
 use crate::model::file::Model;
 use crate::model::provenance::Provenance;
 use crate::result::code::Code;
@@ -19,7 +19,7 @@ impl Check {
     /// the reachable sets that were compared.
     #[must_use]
     pub fn summary(&self, model: &Model, tube: &Tube, front_end: FrontEnd) -> Summary {
-        let kinds = model.drive.robot.kinds();
+        let signals = &model.signals;
         let sets = AtHorizon::new(tube);
         let failing = failing(&self.verdict);
         // The cause and its remedy are part of the model's own answer.
@@ -39,11 +39,11 @@ impl Check {
             summary.table = table_of_sets(model, &sets, None);
             summary.importance = widest_first(model, &sets);
         } else {
-            summary.table = table_of_suites(&failing, &kinds);
-            summary.facts.push(widest(model, &sets, &kinds));
+            summary.table = table_of_suites(&failing, signals);
+            summary.facts.push(widest(model, &sets, signals));
         }
         if let Some(growth) = &self.growth {
-            summary.fact("covered, without a proof, if", findings::least_growth(growth, &kinds));
+            summary.fact("covered, without a proof, if", findings::least_growth(growth, signals));
         }
         summary.fact(
             "new motions",
@@ -115,11 +115,11 @@ fn failing(verdict: &Verdict) -> Vec<&SuiteVerdict> {
     failing
 }
 
-fn table_of_suites(failing: &[&SuiteVerdict], kinds: &[JointKind]) -> Table {
+fn table_of_suites(failing: &[&SuiteVerdict], signals: &Signals) -> Table {
     let row = |suite: &&SuiteVerdict| {
         let worst = suite.violations.worst.as_ref();
         let place = worst.map(|worst| {
-            let unit = worst.state.kind.unit(kinds[worst.state.joint].recorded_units());
+            let unit = signals.unit(worst.state);
             let excess = two_digits_up(worst.excess);
             // A window is a suite of one run, whose name the first column has.
             let run = match worst.run == suite.suite {
@@ -140,20 +140,20 @@ fn table_of_suites(failing: &[&SuiteVerdict], kinds: &[JointKind]) -> Table {
 
 /// Returns the widest sets at the horizon: of the position that is widest beside its motion, and of
 /// the velocities.
-fn widest(model: &Model, sets: &AtHorizon, kinds: &[JointKind]) -> (String, String) {
+fn widest(model: &Model, sets: &AtHorizon, signals: &Signals) -> (String, String) {
     let n = model.joints();
-    let name = |joint: usize| &model.drive.robot.joints[joint].name;
+    let name = |joint: usize| &model.signals.parts[joint].name;
     let q = widest_first(model, sets).first().copied().unwrap_or_default();
     let speed = |joint: &usize| sets.radii[n + joint];
     let qd = (0..n).max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or_default();
     let value = format!(
         "± {} {} ({}, {} of its motion), ± {} {} ({})",
         two_digits_up(sets.radii[q]),
-        kinds[q].position_unit(),
+        signals.states[q].unit,
         name(q),
         share(model, q, sets.radii[q]),
         two_digits_up(sets.radii[n + qd]),
-        kinds[qd].velocity_unit(),
+        signals.states[n + qd].unit,
         name(qd),
     );
     (format!("widest sets at {:.3} s", sets.horizon), value)

@@ -27,7 +27,7 @@ pub(super) fn dependence(model: &Model) -> [Section; 2] {
 
 /// Returns the table of the sets without each motion, the motions that need the most growth first.
 fn table_of_left_out(model: &Model) -> Table {
-    let is_linear = model.drive.acceleration.is_empty();
+    let is_linear = !model.a.is_empty();
     let mut all: Vec<&LeftOut> = model.left_out.iter().collect();
     // The notion `hull` of a linear model has the factors of X0 and of U in turn.
     let in_turn = all.iter().any(|left| left.initial_gauge.is_some());
@@ -68,14 +68,14 @@ fn table_of_left_out(model: &Model) -> Table {
 
 /// Returns the joints of one suite that follow the order of the runs.
 fn trend(model: &Model, of_suite: &[Trend]) -> (String, String) {
-    let kinds = model.drive.robot.kinds();
+    let signals = &model.signals;
     let joint = |trend: &Trend| {
         format!(
             "{} {:+.2} ({} {})",
-            model.drive.robot.joints[trend.joint - 1].name,
+            model.signals.parts[trend.joint - 1].name,
             trend.correlation,
             significant(trend.range, 2),
-            kinds[trend.joint - 1].position_unit()
+            signals.states[trend.joint - 1].unit
         )
     };
     let list: Vec<String> = of_suite.iter().map(joint).collect();

@@ -67,7 +67,7 @@ fn cost(cost: Option<f64>) -> String {
 fn parameters(model: &Model, record: &FitRecord, changed: &[&FittedParameter]) -> Table {
     let row = |p: &&FittedParameter| {
         vec![
-            model.drive.robot.joints[p.joint - 1].name.clone(),
+            model.signals.parts[p.joint - 1].name.clone(),
             p.name.clone(),
             format!("{} {}", four_decimals(p.identified), p.unit),
             p.standard_error.map_or_else(|| "-".into(), four_decimals),

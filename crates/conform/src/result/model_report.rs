@@ -1,13 +1,10 @@
 //! The report of a model: what was proved, the sets, and what follows for other motions.
 
 use reachtube_recordings::State;
-use reachtube_robot::JointKind;
-use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::interval;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::data::settings::Equations;
 use crate::model::file::Model;
 use crate::result::dependence_report::dependence;
 use crate::result::findings;
@@ -92,9 +89,7 @@ fn sets(model: &Model) -> Section {
     section.findings.extend(model.finding_of_stiction(&model.stiction));
     if let Some(noise) = &model.sensor_noise {
         let (q, qd) = noise.radius.split_at(model.joints());
-        let kinds = model.drive.robot.kinds();
-        let [position, velocity] = [JointKind::position_unit, JointKind::velocity_unit]
-            .map(|unit| JointKind::units(&kinds, unit));
+        let [position, velocity] = [0, 1].map(|at| model.signals.units_of_state(at).list());
         let list = |radii: &[f64]| spaced(radii.iter().map(|radius| format!("{radius:.1e}")));
         let source = match noise.estimated {
             true => "estimated from the recordings, 5 standard deviations",
@@ -110,16 +105,13 @@ fn sets(model: &Model) -> Section {
         None => "-".into(),
     };
     let list = |parts: &[Option<f64>]| spaced(parts.iter().map(percent));
-    let by = match model.settings.equations {
-        Equations::Model => "",
-        Equations::Robot => ", by the robot's own equations",
-    };
+    let by = model.signals.nominal.as_ref().map_or_else(String::new, |by| format!(", by {by}"));
     section.fact(
         format!("variance explained by the nominal motions{by}"),
         format!("q {} %; qd {} %", list(q), list(qd)),
     );
     if !model.input_error.is_empty() {
-        let unit = JointKind::units(&model.drive.robot.kinds(), JointKind::force_unit);
+        let unit = model.signals.units_of_inputs().list();
         let errors = spaced(model.input_error.iter().map(|error| format!("{error:.2}")));
         section.fact("RMS torque error", format!("{errors} {unit}"));
     }
@@ -129,16 +121,15 @@ fn sets(model: &Model) -> Section {
 /// Returns the sets joint by joint.
 fn table_of_sets(model: &Model) -> Table {
     let n = model.joints();
-    let kinds = model.drive.robot.kinds();
-    let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
-    let [q, qd, u] = units.map(|unit| ColumnUnit::new(&kinds, unit));
+    let [q, qd] = [0, 1].map(|at| model.signals.units_of_state(at));
+    let u = model.signals.units_of_inputs();
     let mut header = vec!["joint".into(), q.head("X0 q"), qd.head("X0 qd"), u.head("U")];
     if model.noise_set.is_some() {
         header.extend([q.head("V q"), qd.head("V qd")]);
     }
     let row = |joint: usize| {
         let mut row = vec![
-            model.drive.robot.joints[joint].name.clone(),
+            model.signals.parts[joint].name.clone(),
             q.cell(joint, interval(model.initial_set.bounds(joint))),
             qd.cell(joint, interval(model.initial_set.bounds(n + joint))),
             u.cell(joint, interval(model.input_set.bounds(joint))),
@@ -154,12 +145,13 @@ fn table_of_sets(model: &Model) -> Table {
 
 /// Returns the recorded values that touch the reachable sets.
 fn touching(model: &Model) -> Section {
-    let kinds = model.drive.robot.kinds();
+    let signals = &model.signals;
     // Margins of both units stand in one column.
-    let is_plain = kinds.iter().all(|kind| *kind == JointKind::Revolute);
+    let [q, qd] = [0, 1].map(|at| signals.units_of_state(at));
+    let is_plain = q.shared().is_some() && qd.shared().is_some();
     let unit = |state: &State| match is_plain {
         true => String::new(),
-        false => format!(" {}", state.kind.unit(kinds[state.joint].recorded_units())),
+        false => format!(" {}", signals.unit(*state)),
     };
     let row = |place: &Witness| {
         vec![
@@ -170,9 +162,12 @@ fn touching(model: &Model) -> Section {
             format!("{:.1e}{}", 0.0 - place.excess, unit(&place.state)),
         ]
     };
-    let margin = if is_plain { "margin [rad, rad/s]" } else { "margin" };
+    let margin = match (q.shared(), qd.shared()) {
+        (Some(q), Some(qd)) => format!("margin [{q}, {qd}]"),
+        _ => "margin".into(),
+    };
     let rows: Vec<_> = model.tight.iter().map(row).collect();
-    let table = Table::new(["run", "time", "state", "side", margin], rows).cut_to(MOST_PLACES);
+    let table = Table::new(["run", "time", "state", "side", &margin], rows).cut_to(MOST_PLACES);
     let tables = if model.tight.is_empty() { Vec::new() } else { vec![table] };
     Section { findings: vec![findings::touching(model)], tables, ..Section::default() }
 }

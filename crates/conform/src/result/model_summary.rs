@@ -1,7 +1,5 @@
 //! The summary of a model: the verdict, the sets at the horizon, and what follows.
 
-use reachtube_robot::JointKind;
-use reachtube_robot::units::ColumnUnit;
 use reachtube_scalar::number::{two_digits_outward, two_digits_up};
 
 use crate::answer::Answer;
@@ -132,9 +130,8 @@ pub(super) fn brief(finding: &Finding) -> String {
 /// Returns the sets at the horizon joint by joint.
 pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f64]>) -> Table {
     let n = model.joints();
-    let kinds = model.drive.robot.kinds();
-    let units = [JointKind::position_unit, JointKind::velocity_unit, JointKind::force_unit];
-    let [q, qd, u] = units.map(|unit| ColumnUnit::new(&kinds, unit));
+    let [q, qd] = [0, 1].map(|at| model.signals.units_of_state(at));
+    let u = model.signals.units_of_inputs();
     let mut header = vec![
         "joint".into(),
         q.head(&format!("q at {:.3} s", sets.horizon)),
@@ -143,13 +140,14 @@ pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f
         u.head("U"),
     ];
     header.extend(factors.map(|_| "held out".into()));
-    let half = |unit: &ColumnUnit, joint: usize, radius: f64| match radius.is_finite() {
+    let half = |unit: &reachtube_finding::Units, joint: usize, radius: f64| match radius.is_finite()
+    {
         true => unit.cell(joint, format!("± {}", two_digits_up(radius))),
         false => "lost".into(),
     };
     let row = |joint: usize| {
         let mut row = vec![
-            model.drive.robot.joints[joint].name.clone(),
+            model.signals.parts[joint].name.clone(),
             half(&q, joint, sets.radii[joint]),
             share(model, joint, sets.radii[joint]),
             half(&qd, joint, sets.radii[n + joint]),

@@ -1,9 +1,10 @@
 //! Tests of the recordings as a user reads them, and of campaigns that were stopped.
 
+use reachtube_arm::{ArmSettings, setup};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, conform};
+use reachtube_conform::{Keep, Problem, Settings, Silent, conform};
 use reachtube_recordings::{DataSet, ReadOptions, RunSource, Torque};
 use reachtube_robot::Robot;
 
@@ -202,7 +203,9 @@ fn a_demo_holds_out_its_last_motions_and_conformance_of_the_others_is_verified()
                   temp1,temp2,temp3,temp4,temp5,temp6";
     assert_eq!(text.lines().next(), Some(header));
     assert_eq!(text.lines().count(), 1 + 451, "from a tenth of 2 s to their end, both included");
-    let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6)).unwrap();
+    let setup =
+        setup(Robot::lwa4p(), ArmSettings::new(Torque::Compensated, 6), Settings::default())
+            .unwrap();
     let source = Box::new(DataSet::open(folder.path()).unwrap());
     let problem = Problem::read(setup, source, &recorded.training, Keep::Needed, &Silent).unwrap();
     let result = conform(&problem, &Silent, None).unwrap();

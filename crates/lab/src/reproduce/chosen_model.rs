@@ -1,5 +1,6 @@
 //! The calibration bound for models that were not fixed before a look at the held-out motions.
 
+use reachtube_arm::{ArmModel, ArmSettings, OfArm};
 use std::ops::Range;
 
 use reachtube_conform::{
@@ -97,8 +98,8 @@ fn with_one((read, found): (Problem, Conformance)) -> (Problem, Conformance, usi
 
 fn setup(robot: Robot, held_out: usize) -> Result<Setup> {
     let calibrate = motion_names(0..held_out);
-    let settings = Settings { calibrate, ..Settings::new(Torque::Compensated, 6) };
-    Ok(Setup::new(robot, settings)?)
+    let settings = Settings { calibrate, ..Settings::default() };
+    Ok(reachtube_arm::setup(robot, ArmSettings::new(Torque::Compensated, 6), settings)?)
 }
 
 fn fitted(motions: &MemoryRuns, used: Range<usize>) -> Result<Robot> {

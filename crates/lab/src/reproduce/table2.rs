@@ -1,5 +1,6 @@
 //! Table II: the uncertainty sets of model 1.
 
+use reachtube_arm::{ArmSettings, setup};
 use std::path::Path;
 
 use reachtube_conform::settings::{Centre, InitialLimit, States};
@@ -169,9 +170,9 @@ impl Table2Options {
             disturbance: self.disturbance.unwrap_or(default),
             initial_limit: self.initial_limit,
             centre: Centre::Origin,
-            ..Settings::new(Torque::Compensated, 6)
+            ..Settings::default()
         };
-        Ok(Setup::new(Robot::lwa4p(), settings)?)
+        Ok(setup(Robot::lwa4p(), ArmSettings::new(Torque::Compensated, 6), settings)?)
     }
 }
 

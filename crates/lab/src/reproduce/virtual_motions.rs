@@ -1,9 +1,10 @@
 //! Small campaigns of the virtual robot.
 
+use reachtube_arm::{ArmSettings, setup};
 use std::ops::Range;
 
 use rayon::prelude::*;
-use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, Tube, Verdict};
+use reachtube_conform::{Keep, Problem, Settings, Silent, Tube, Verdict};
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
 
@@ -58,8 +59,9 @@ pub(super) fn problem(
     calibrating: usize,
 ) -> Result<Problem> {
     let calibrate = motion_names(used.start..used.start + calibrating);
-    let settings = Settings { calibrate, ..Settings::new(Torque::Compensated, 6) };
-    let setup = Setup::new(Robot::lwa4p(), settings)?;
+    let settings = Settings { calibrate, ..Settings::default() };
+    let arm = ArmSettings::new(Torque::Compensated, 6);
+    let setup = setup(Robot::lwa4p(), arm, settings)?;
     Ok(Problem::read(setup, Box::new(motions), &motion_names(used), Keep::Needed, &Silent)?)
 }
 

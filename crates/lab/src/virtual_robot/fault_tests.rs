@@ -1,8 +1,8 @@
 //! How soon a monitor finds faults of the virtual arm, and whether it is quiet without one.
 
+use reachtube_arm::{ArmModel, ArmSettings, Equations, setup};
 use reachtube_conform::monitor::{HealthyMotion, Monitor, Schedule};
-use reachtube_conform::settings::Equations;
-use reachtube_conform::{Keep, Model, Problem, Settings, Setup, Silent, conform};
+use reachtube_conform::{Keep, Model, Problem, Settings, Silent, conform};
 use reachtube_recordings::{MemoryRuns, ReadOptions, Run, RunSource, Torque};
 use reachtube_robot::Robot;
 
@@ -172,8 +172,8 @@ fn model(cycles: usize, horizon: f64) -> Model {
         runs.push(&format!("{window}"), Some(&format!("w{window}")), None, piece);
     }
     let settings =
-        Settings { equations: Equations::Robot, ..Settings::new(Torque::Compensated, 6) };
-    let setup = Setup::new(Robot::lwa4p(), settings).unwrap();
+        ArmSettings { equations: Equations::Robot, ..ArmSettings::new(Torque::Compensated, 6) };
+    let setup = setup(Robot::lwa4p(), settings, Settings::default()).unwrap();
     let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
     Model::new(&problem, &conform(&problem, &Silent, None).unwrap())
 }
@@ -191,7 +191,7 @@ fn calibrate(model: &mut Model, recordings: &MemoryRuns, horizon: f64) -> f64 {
         set.radius.iter_mut().for_each(|radius| *radius *= growth);
     }
     // Its digest is made anew.
-    *model = Model::parse(&model.to_json(), "model".as_ref()).unwrap().0;
+    *model = reachtube_arm::parse(&model.to_json(), "model".as_ref()).unwrap().0;
     growth
 }
 
@@ -224,7 +224,7 @@ fn watch(
     run: &Run,
     from: usize,
 ) -> Watched {
-    let mut monitor = Monitor::new(model, schedule).unwrap();
+    let mut monitor = Monitor::new(model, model.setup().unwrap(), schedule).unwrap();
     healthy.iter().for_each(|healthy| monitor.watch(healthy).unwrap());
     let mut found = Watched::default();
     for (k, &time) in run.times.iter().enumerate() {
@@ -236,7 +236,7 @@ fn watch(
         for alarm in monitor.alarms() {
             found.alarms += 1;
             found.early += usize::from(k < from);
-            let what = || (after, alarm.finding(None).text);
+            let what = || (after, alarm.finding(&model.signals).text);
             if k >= from {
                 found.alarm = found.alarm.take().or_else(|| Some(what()));
             }
@@ -287,7 +287,7 @@ fn faults_are_found_and_a_healthy_minute_is_quiet() {
     let schedule = Schedule::with_horizon(horizon, SAMPLE_TIME);
     let (mut model, known) = (model(15_000, horizon), recordings(8, 7500));
     let growth = calibrate(&mut model, &known, horizon);
-    let healthy = HealthyMotion::learn(&model, schedule, &known).unwrap();
+    let healthy = HealthyMotion::learn(&model, model.setup().unwrap(), schedule, &known).unwrap();
     let quiet = watch((&model, schedule), Some(&healthy), &record_healthy(15_000, 3), 0);
     assert!(quiet.left.is_none() && quiet.alarms == 0, "{quiet:?} {growth}");
     for fault in [Fault::Slip(0.02), Fault::Drag(15.0)] {
@@ -310,7 +310,9 @@ fn the_table_of_faults() {
     let schedule = Schedule::with_horizon(horizon, SAMPLE_TIME);
     let mut model = model(75_000, horizon);
     let growth = calibrate(&mut model, &recordings(40, 30_000), horizon);
-    let healthy = HealthyMotion::learn(&model, schedule, &recordings(20, 30_000)).unwrap();
+    let healthy =
+        HealthyMotion::learn(&model, model.setup().unwrap(), schedule, &recordings(20, 30_000))
+            .unwrap();
     println!("{healthy:?}\n{:?}", healthy.ranges());
     for seed in [3, 4, 5, 6] {
         let found = watch((&model, schedule), Some(&healthy), &record_healthy(150_000, seed), 0);

@@ -1,5 +1,6 @@
 //! An exported case: a model over one recorded input, with its sets and our bounds.
 
+use reachtube_arm::OfArm;
 use reachtube_conform::data::Case;
 use reachtube_conform::{Problem, SuiteReach, Tube, UncertaintySets, reach};
 use reachtube_reach::{Disturbance, Hyperrectangle, TimeGrid};
@@ -64,16 +65,17 @@ impl ExportCase {
             return Err(ExportError::NoTime { case: case.name.clone() });
         }
         let settings = problem.settings();
-        let abstraction = settings.abstraction;
+        let arm = problem.arm();
+        let abstraction = arm.settings.abstraction;
         Ok(Self {
             model: format!(
                 "model {} of order {} of {}, {}",
                 u32::from(abstraction.model),
                 abstraction.order,
-                harmless(problem.robot().name()),
+                harmless(arm.robot().name()),
                 harmless(&case.name)
             ),
-            system: System::new(problem.dynamics(), problem.robot().kinds()),
+            system: System::new(problem.dynamics(), arm.robot().kinds()),
             start: case.start.clone(),
             sets: tube.sets.clone(),
             grid: case.grid.as_ref().clone(),

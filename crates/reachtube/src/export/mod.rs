@@ -9,17 +9,19 @@
 //! # Examples
 //!
 //! ```
+//! use reachtube::arm::{ArmSettings, setup};
 //! use reachtube::conform::{Tube, Settings, UncertaintySets};
 //! use reachtube::export::{ExportCase, InputForm, Tool, files};
 //! use reachtube::{
-//!     Hyperrectangle, Keep, MemoryRuns, Problem, Robot, Run, Setup, Silent, Torque,
+//!     Hyperrectangle, Keep, MemoryRuns, Problem, Robot, Run, Silent, Torque,
 //! };
 //!
 //! let states = [0.0; 12].repeat(3);
 //! let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18])?;
 //! let mut runs = MemoryRuns::default();
 //! runs.push("rest", Some("A"), None, run);
-//! let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6))?;
+//! let arm = ArmSettings::new(Torque::Compensated, 6);
+//! let setup = setup(Robot::lwa4p(), arm, Settings::default())?;
 //! let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent)?;
 //! let box_of = |n, radius| Hyperrectangle { centre: vec![0.0; n], radius: vec![radius; n] };
 //! let (initial_set, input_set) = (box_of(12, 1e-3), box_of(6, 0.5));

@@ -3,12 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
+use reachtube::arm::{ArmSettings, setup};
 use reachtube::conform::{Settings, Tube, UncertaintySets};
 use reachtube::export::{ExportCase, ExportFile, InputForm, Tool, files};
 use reachtube::recordings::DataSet;
 use reachtube::{
     Abstraction, ExpansionPoint, Hyperrectangle, Keep, MemoryRuns, ModelKind, Problem, Robot, Run,
-    RunSource, Setup, Silent, Torque,
+    RunSource, Silent, Torque,
 };
 
 /// Models and orders that every test takes: affine, cubic, and with sines and cosines.
@@ -46,11 +47,10 @@ pub(crate) fn cases_of(
     [suites, until]: [Option<&str>; 2],
 ) -> Vec<ExportCase> {
     let n = robot.joint_count();
-    let mut settings = Settings::new(Torque::Compensated, n);
-    settings.abstraction = Abstraction { model, order };
-    settings.expansion_point = point;
-    settings.until = until.map(|seconds| seconds.parse().unwrap());
-    let setup = Setup::new(robot.clone(), settings).unwrap();
+    let mut arm = ArmSettings::new(Torque::Compensated, n);
+    (arm.abstraction, arm.expansion_point) = (Abstraction { model, order }, point);
+    let until = until.map(|seconds| seconds.parse().unwrap());
+    let setup = setup(robot.clone(), arm, Settings { until, ..Settings::default() }).unwrap();
     let names: Vec<String> = suites.iter().map(|name| (*name).to_string()).collect();
     let problem = Problem::read(setup, source, &names, Keep::Needed, &Silent).unwrap();
     let mut numbers = Numbers::new();

@@ -10,12 +10,12 @@ mod seeds;
 use std::path::Path;
 
 use mutation::attack;
+use reachtube::Robot;
 use reachtube::abstraction::PolynomialModel;
 use reachtube::identify::IdentifySettings;
 use reachtube::pipeline::Choices;
 use reachtube::recordings::{DataSet, ReadOptions, read_csv};
 use reachtube::verify::{Brakes, Capsules, Scenario};
-use reachtube::{Model, Robot};
 use reachtube_robot::{Urdf, UrdfOptions};
 
 /// Number of inputs for each reader in every test run.
@@ -91,7 +91,7 @@ fn try_files(count: u64, folder: &Path) {
     // The index lists a recording that is there.
     std::fs::write(folder.join("run.csv"), seeds::recordings().remove(0)).unwrap();
     try_file("runs.csv", seeds::indices(), &|_| drop(DataSet::open(folder)));
-    try_file("model.json", seeds::models(), &|path| drop(Model::open(path)));
+    try_file("model.json", seeds::models(), &|path| drop(reachtube::arm::open(path)));
     try_file("abstraction.json", seeds::abstractions(), &|path| drop(PolynomialModel::load(path)));
 }
 
@@ -164,7 +164,7 @@ fn recordings_and_models_are_read_before_they_are_made_hostile() {
         DataSet::open(folder.path()).unwrap();
     }
     for model in seeds::models() {
-        Model::open(&written("model.json", model)).unwrap();
+        reachtube::arm::open(&written("model.json", model)).unwrap();
     }
     for abstraction in seeds::abstractions() {
         PolynomialModel::load(&written("abstraction.json", abstraction)).unwrap();

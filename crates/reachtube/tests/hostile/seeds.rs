@@ -1,15 +1,14 @@
 //! Texts of the shape of real files, from which hostile ones are made.
 
 use reachtube::abstraction::{ExpansionPoint, ModelKind, PolynomialModel};
+use reachtube::arm::{ArmSettings, setup};
 use reachtube::conform::SuiteReach;
 use reachtube::export::ExportError;
 use reachtube::export::shield::{Shield, ShieldFile};
 use reachtube::reach::StepBounds;
 use reachtube::scalar::Interval;
 use reachtube::verify::Capsules;
-use reachtube::{
-    Keep, MemoryRuns, Model, Problem, Robot, Run, Settings, Setup, Silent, Torque, conform,
-};
+use reachtube::{Keep, MemoryRuns, Model, Problem, Robot, Run, Settings, Silent, Torque, conform};
 use reachtube_robot::Urdf;
 
 const ROBOT: &str = r#"schema_version = 1
@@ -106,7 +105,8 @@ pub(crate) fn models() -> Vec<Vec<u8>> {
         let run = Run::new(2, vec![0.0, 0.01, 0.02], states, vec![0.0; 6]).unwrap();
         runs.push(&format!("run{offset}"), Some("A"), None, run);
     }
-    let setup = Setup::new(robot, Settings::new(Torque::Compensated, 2)).unwrap();
+    let arm = ArmSettings::new(Torque::Compensated, 2);
+    let setup = setup(robot, arm, Settings::default()).unwrap();
     let problem = Problem::read(setup, Box::new(runs), &[], Keep::Needed, &Silent).unwrap();
     vec![Model::new(&problem, &conform(&problem, &Silent, None).unwrap()).to_json().into_bytes()]
 }

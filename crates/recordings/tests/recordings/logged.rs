@@ -212,7 +212,7 @@ fn files_of_one_quantity_are_joined() {
     let [files] = &groups[..] else { panic!("{groups:?}") };
     assert!(files[0].ends_with("position.csv"), "{files:?}");
     let columns = ColumnSettings::default();
-    check(&read_logged(files, &options(Some(&Robot::lwa4p()), &columns)).unwrap());
+    check(&read_logged(files, &options(Some(&arm()), &columns)).unwrap());
     let effort = folder.path().join("effort.csv");
     let short = std::fs::read_to_string(&effort).unwrap();
     let short: Vec<&str> = short.lines().take(SAMPLES).collect();

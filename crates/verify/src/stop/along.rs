@@ -1,6 +1,7 @@
 //! Stops from every sample of recorded motions.
 
 use rayon::prelude::*;
+use reachtube_arm::OfArm;
 use reachtube_conform::data::{RunSummary, Suite};
 use reachtube_conform::{Problem, SuiteReach};
 use reachtube_robot::Robot;

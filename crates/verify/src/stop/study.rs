@@ -1,5 +1,6 @@
 //! Questions about the stops of a robot.
 
+use reachtube_arm::OfArm;
 use reachtube_conform::{Problem, UncertaintySets};
 use reachtube_finding::Finding;
 use reachtube_recordings::RunSource;
@@ -69,7 +70,7 @@ pub fn stop_study(
     let along = |brakes: &Brakes| stops_along(problem, brakes, category, every);
     let stops = along(brakes)?;
     let span = DelaySpan::new(&stops, brakes, along)?;
-    let unit = JointKind::any_unit(&robot.kinds(), JointKind::position_unit);
+    let unit = JointKind::column(&robot.kinds(), JointKind::position_unit).any();
     let findings = findings((&stops, &span), annex_b.as_ref(), &recorded, &unit);
     Ok(StopStudy { category: category.number(), stops, annex_b, recorded, findings })
 }

@@ -1,5 +1,6 @@
 //! Changes that decide an open question.
 
+use reachtube_arm::OfArm;
 use reachtube_conform::{Error, SuiteReach, Tube, UncertaintySets, reach};
 use reachtube_reach::Hyperrectangle;
 use schemars::JsonSchema;

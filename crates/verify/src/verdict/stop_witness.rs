@@ -10,6 +10,7 @@ use crate::stop::simulated::{SimulatedStop, StopCase};
 use crate::verdict::clearance::Clearance;
 use crate::verdict::gradient::Motion;
 use crate::verdict::witness::{Approach, StopOfWitness, Witness};
+use reachtube_arm::OfArm;
 
 /// Number of pairs of a link and an obstacle that are tried, the closest first.
 const PAIRS: usize = 3;

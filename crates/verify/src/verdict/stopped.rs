@@ -1,5 +1,6 @@
 //! The verdict about a motion that is stopped.
 
+use reachtube_arm::OfArm;
 use reachtube_conform::data::Case;
 use reachtube_robot::Robot;
 

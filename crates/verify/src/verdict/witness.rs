@@ -1,6 +1,7 @@
 //! Motions of the model that come close to an obstacle.
 
 use nalgebra::Vector3;
+use reachtube_arm::OfArm;
 use reachtube_conform::data::Case;
 use reachtube_conform::{Problem, UncertaintySets};
 use reachtube_reach::Disturbance;

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use reachtube_conform::{Keep, Problem, Settings, Setup, Silent, SuiteReach, Tube, conform, reach};
+use reachtube_arm::{ArmSettings, setup};
+use reachtube_conform::{Keep, Problem, Settings, Silent, SuiteReach, Tube, conform, reach};
 use reachtube_reach::StepBounds;
 use reachtube_recordings::{DataSet, Torque};
 use reachtube_robot::Robot;
@@ -13,8 +14,8 @@ use reachtube_verify::{Body, Capsules};
 fn the_margins_of_the_paper_suites() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/schunk_lwa4p");
     let robot = Robot::lwa4p();
-    let settings = Settings::new(Torque::Compensated, robot.joint_count());
-    let setup = Setup::new(robot.clone(), settings).unwrap();
+    let arm = ArmSettings::new(Torque::Compensated, robot.joint_count());
+    let setup = setup(robot.clone(), arm, Settings::default()).unwrap();
     let data = Box::new(DataSet::open(&folder).unwrap());
     let problem = Problem::read(setup, data, &[], Keep::Needed, &Silent).unwrap();
     let conformance = conform(&problem, &Silent, None).unwrap();

@@ -1,6 +1,7 @@
+use reachtube::arm::ArmSettings;
 use std::path::{Path, PathBuf};
 
-use reachtube::conform::{Answer, FitSettings, Job, Settings};
+use reachtube::conform::{Answer, FitSettings, Job};
 use reachtube::finding::{FrontEnd, Summary};
 use reachtube::page::{Assets, Page, Sources, page};
 use reachtube::pipeline::Cut;
@@ -90,22 +91,20 @@ fn summary(answer: &Answer, written: &[&Path], args: &Arguments) -> Result<Summa
 fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
     let basis = basis(args)?;
     let robot = basis.robot()?.into_owned();
-    let settings = settings(args, &robot)?;
+    let (arm, settings) = settings(args, &robot)?;
     let fit = FitSettings { groups: args.fit.clone(), pull: args.pull };
     let (job, preparation) = match args.horizon {
         None => {
-            let torque = settings.torque;
-            let job = Job::new(basis, DataSet::open(&args.data.data)?, torque);
-            (job.settings(settings), None)
+            let setup = basis.setup(arm, settings)?;
+            (Job::new(setup, DataSet::open(&args.data.data)?), None)
         }
         Some(horizon) => {
             let paths = std::slice::from_ref(&args.data.data);
-            let (torque, max_gap) = (settings.torque, args.data.max_gap);
+            let (torque, max_gap) = (arm.torque, args.data.max_gap);
             let cut = Cut::new(&robot, torque, horizon, max_gap, &settings.calibrate, paths)?;
             output::notes(&cut.notes);
-            let settings = Settings { torque: Torque::Compensated, ..settings };
-            let job = Job::new(basis, cut.windows, settings.torque).settings(settings);
-            (job, Some(cut.preparation))
+            let arm = ArmSettings { torque: Torque::Compensated, ..arm };
+            (Job::new(basis.setup(arm, settings)?, cut.windows), Some(cut.preparation))
         }
     };
     let job = job

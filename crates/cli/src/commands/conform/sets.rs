@@ -1,9 +1,8 @@
 //! The options that decide which sets `conform` finds.
 
 use clap::Args;
-use reachtube::conform::settings::{
-    Centre, Equations, InitialLimit, Method, NominalStart, States, Weights,
-};
+use reachtube::arm::Equations;
+use reachtube::conform::settings::{Centre, InitialLimit, Method, NominalStart, States, Weights};
 use reachtube::conform::{Noise, Notion, Settings};
 use reachtube_reach::Disturbance;
 
@@ -160,7 +159,6 @@ impl SetArguments {
                 None => None,
             },
             nominal: self.nominal,
-            equations: self.equations,
             calibrate: self.calibrate.clone(),
             ..usual
         })

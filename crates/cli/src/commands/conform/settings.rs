@@ -1,7 +1,8 @@
 //! The settings of `conform` from its arguments.
 
 use reachtube::abstraction::{Abstraction, PolynomialModel};
-use reachtube::conform::{Basis, Settings};
+use reachtube::arm::{ArmSettings, Basis};
+use reachtube::conform::Settings;
 use reachtube_robot::Robot;
 
 use super::arguments::Arguments;
@@ -16,16 +17,20 @@ pub(super) fn basis(args: &Arguments) -> Result<Basis> {
     })
 }
 
-pub(super) fn settings(args: &Arguments, robot: &Robot) -> Result<Settings> {
+pub(super) fn settings(args: &Arguments, robot: &Robot) -> Result<(ArmSettings, Settings)> {
     let joints = robot.joint_count();
-    let usual = Settings {
+    let arm = ArmSettings {
+        torque: args.data.torque.ok_or_else(|| Error::setting(NO_TORQUE))?,
         abstraction: Abstraction { model: args.paper_model, order: args.order },
         expansion_point: expansion_point(&args.expansion, robot)?,
+        equations: args.sets.equations,
+    };
+    let usual = Settings {
         until: args.data.until,
         gap_limit: args.data.max_gap.into(),
-        ..Settings::new(args.data.torque.ok_or_else(|| Error::setting(NO_TORQUE))?, joints)
+        ..Settings::default()
     };
     let settings = args.sets.settings(usual, joints)?;
     settings.validate(joints)?;
-    Ok(settings)
+    Ok((arm, settings))
 }

@@ -1,10 +1,11 @@
 //! Options of `reachtube export`, and the way it writes files.
 
+use reachtube::arm::{self, OfArm};
 use std::path::PathBuf;
 
 use clap::Args;
 use reachtube::Robot;
-use reachtube::conform::{Keep, Model};
+use reachtube::conform::Keep;
 use reachtube::export::{ExportFile, InputForm, Tool};
 use serde::Deserialize;
 
@@ -175,7 +176,7 @@ pub(super) fn write_all<'a>(
 pub(super) fn load_robot(args: &Arguments) -> Result<Robot> {
     match (&args.robot, &args.model) {
         (Some(robot), _) => args.lock.load(robot),
-        (None, Some(model)) => Ok(Model::open(model)?.1.robot().clone()),
+        (None, Some(model)) => Ok(arm::open(model)?.1.robot().clone()),
         (None, None) => Err(Error::setting(NO_MODEL)),
     }
 }
@@ -190,7 +191,7 @@ pub(super) fn open(args: &Arguments, tool: &str) -> Result<OpenedCheck> {
         ))
     };
     let data = args.data.clone().ok_or_else(no_input)?;
-    let (model, setup) = Model::open(model)?;
+    let (model, setup) = arm::open(model)?;
     let data = DataArguments {
         data,
         suites: args.suites.clone(),

@@ -1,5 +1,6 @@
 //! `reachtube export --to sara-shield`.
 
+use reachtube::arm::ArmModel;
 use std::path::{Path, PathBuf};
 
 use reachtube::Robot;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use reachtube::conform::data::Signals;
 use reachtube::conform::monitor::{Alarm, HealthyMotion, Leave, Monitor, Totals};
 use reachtube::finding::{Code, Finding};
 use reachtube::recordings::State;
-use reachtube::robot::{JointKind, Robot};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -16,8 +16,7 @@ use crate::table::table;
 /// Prints events and the summary, as text or as one JSON object per line.
 pub(super) struct Events {
     json: bool,
-    names: Vec<String>,
-    kinds: Vec<JointKind>,
+    signals: Signals,
     /// The first event.
     first: Option<Finding>,
     /// Upper bound of the probability of an alarm in one more healthy recording.
@@ -77,9 +76,8 @@ pub(crate) enum Event<'a> {
 }
 
 impl Events {
-    pub(super) fn new(robot: &Robot, json: bool) -> Self {
-        let names = robot.joints().iter().map(|joint| joint.name.clone()).collect();
-        Self { json, names, kinds: robot.kinds(), first: None, alarm_bound: None }
+    pub(super) fn new(signals: Signals, json: bool) -> Self {
+        Self { json, signals, first: None, alarm_bound: None }
     }
 
     /// Prints a line for each window that is left for the first time, with its worst state.
@@ -94,8 +92,8 @@ impl Events {
     }
 
     fn print(&mut self, leave: &Leave) -> Result<()> {
-        let name = &self.names[leave.joint - 1];
-        let finding = leave.finding(name, self.kinds[leave.joint - 1]);
+        let name = &self.signals.parts[leave.joint - 1].name;
+        let finding = leave.finding(&self.signals);
         let text = format!("{}\n", finding.text);
         let code = finding.code.clone();
         self.first.get_or_insert(finding);
@@ -114,8 +112,8 @@ impl Events {
              probability at most {bound:.3}"
         ));
         let ranges = healthy.ranges();
-        let resting = self.names.iter().zip(&ranges).filter(|(_, range)| range.is_none());
-        let resting: Vec<&str> = resting.map(|(name, _)| &**name).collect();
+        let resting = self.signals.parts.iter().zip(&ranges).filter(|(_, range)| range.is_none());
+        let resting: Vec<&str> = resting.map(|(part, _)| &*part.name).collect();
         if !resting.is_empty() {
             output::note(&format!(
                 "the healthy recordings move {} too little: no sudden torque on it is noticed",
@@ -127,10 +125,9 @@ impl Events {
     /// Prints a line for each alarm.
     pub(super) fn alarms(&mut self, alarms: &[Alarm]) -> Result<()> {
         for alarm in alarms {
-            let joint = alarm.joint.map(|joint| (&*self.names[joint - 1], self.kinds[joint - 1]));
-            let finding = alarm.finding(joint);
+            let finding = alarm.finding(&self.signals);
             if self.json {
-                let name = joint.map(|(name, _)| name);
+                let name = alarm.joint.map(|joint| &*self.signals.parts[joint - 1].name);
                 line(&Event::Alarm { alarm, name, code: finding.code.clone() })?;
             } else {
                 output::print(&format!("{}\n", finding.text))?;
@@ -147,7 +144,7 @@ impl Events {
         }
         let (state, used) = greatest(monitor.used());
         let (drifting, drift) = greatest(monitor.drift());
-        let n = self.names.len();
+        let n = self.signals.parts.len();
         output::print(&format!(
             "{time:.4} s: {:.0} % of the set is used, in {}; the largest drift is {:.0} %, in {}\n",
             100.0 * used,
@@ -176,13 +173,13 @@ impl Events {
         if let Some(first) = &self.first {
             let _ = writeln!(text, "first: {}", first.text);
         }
-        let n = self.names.len();
+        let n = self.signals.parts.len();
         let percent = |part: f64| format!("{:.0}", 100.0 * part);
         let row = |joint: usize| {
             let (used, drift) = (monitor.largest_used(), monitor.drift());
             let values = [used[joint], used[n + joint], drift[joint], drift[n + joint]];
             let cells = values.into_iter().map(percent);
-            std::iter::once(self.names[joint].clone()).chain(cells).collect()
+            std::iter::once(self.signals.parts[joint].name.clone()).chain(cells).collect()
         };
         let rows: Vec<Vec<String>> = (0..n).map(row).collect();
         let header = ["joint", "q used [%]", "qd used [%]", "drift of q [%]", "drift of qd [%]"];

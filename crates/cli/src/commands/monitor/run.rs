@@ -7,7 +7,6 @@ use reachtube::conform::monitor::Schedule;
 use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
 use reachtube::recordings::{DataSet, SampleError};
-use reachtube::robot::Robot;
 use reachtube_files::ErrorKind;
 
 use crate::commands::monitor::arguments::Arguments;
@@ -34,18 +33,17 @@ enum Message {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let (model, setup) = Model::open(&args.model)?;
+    let (model, setup) = reachtube::arm::open(&args.model)?;
     if setup.dynamics().linear_system().is_none() {
         return Err(ConformError::NotLinear.into());
     }
-    let robot = Robot::from_description(&model.robot())?;
     let mut watch = Watch {
         args,
         model: &model,
         form: None,
         first: Vec::new(),
         monitor: None,
-        events: Events::new(&robot, json),
+        events: Events::new(model.signals.clone(), json),
         next_gauge: f64::NEG_INFINITY,
     };
     let ended = watch.follow(&listen());

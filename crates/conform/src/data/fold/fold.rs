@@ -28,33 +28,6 @@ const LISTED_BELOW: u64 = 1000;
 /// Its size grows with the samples of a suite and the number of suites. It does not grow with the
 /// recordings of suites whose recordings share their input.
 ///
-/// # Examples
-///
-/// ```
-/// use reachtube_conform::fleet::{Fold, OnDefect};
-/// use reachtube_conform::{Problem, Settings, Setup, Silent, conform};
-/// use reachtube_recordings::{MemoryRuns, Run, Torque};
-/// use reachtube_robot::Robot;
-///
-/// let setup = Setup::new(Robot::lwa4p(), Settings::new(Torque::Compensated, 6))?;
-/// // Two machines, each with a run of the arm at rest.
-/// let fold = |place: u64, offset: f64| {
-///     let states = [vec![offset; 6], vec![0.0; 6]].concat().repeat(3);
-///     let run = Run::new(6, vec![0.0, 0.004, 0.008], states, vec![0.0; 18]).unwrap();
-///     let mut runs = MemoryRuns::default();
-///     runs.push(&format!("run{place}"), Some("A"), None, run);
-///     let mut fold = Fold::new(&setup).unwrap();
-///     fold.take_source(&runs, place).map(|()| fold.to_bytes())
-/// };
-/// let (first, second) = (fold(0, 0.0)?, fold(1, 0.001)?);
-/// let mut all = Fold::from_bytes(&setup, &second)?;
-/// all.merge(Fold::from_bytes(&setup, &first)?)?;
-/// let problem = Problem::of_fold(setup, all, OnDefect::Refuse)?;
-/// let found = conform(&problem, &Silent, None)?;
-/// assert!((found.sets.initial_set.radius[0] - 0.0005).abs() < 1e-6);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// [`Problem::read`]: crate::Problem::read
 #[derive(Clone)]
 pub struct Fold {

@@ -1,6 +1,5 @@
 //! What sets are used for beyond what they were proved for.
 
-use crate::arm::JointCorrection;
 use crate::data::problem::Problem;
 use crate::data::settings::States;
 use crate::model::file::Model;
@@ -41,32 +40,5 @@ impl Model {
         }
         let warning = |text| Finding::new(Severity::Warning, Code::BeyondProof, text);
         reasons.into_iter().map(warning).collect()
-    }
-
-    /// Returns the warnings of [`beyond_proof`](Self::beyond_proof) for stops, which have another
-    /// reason: joints may have less friction than the robot's description, where it changes with
-    /// their warmth, or a fit took a part of it off the inputs.
-    #[must_use]
-    pub fn beyond_proof_of_stops(&self, problem: &Problem) -> Vec<Finding> {
-        let mut all = self.beyond_proof(problem);
-        all.extend(self.less_friction());
-        all
-    }
-
-    fn less_friction(&self) -> Option<Finding> {
-        let warms = self.drive.robot.joints.iter().any(|joint| joint.friction.warming.is_some());
-        let falls = |joint: &JointCorrection| {
-            let parts = [&joint.coulomb[..], &[joint.warm_up, joint.warm_up_coulomb]].concat();
-            parts.iter().any(|part| *part < 0.0)
-        };
-        let lowered =
-            self.drive.correction.as_ref().is_some_and(|all| all.joints.iter().any(falls));
-        let why = match (warms, lowered) {
-            (true, _) => "it changes as the joints warm up",
-            (false, true) => "the fit found less of it in some joints",
-            (false, false) => return None,
-        };
-        let text = format!("Stops are proved with the friction in the robot's description: {why}.");
-        Some(Finding::new(Severity::Warning, Code::BeyondProof, text))
     }
 }

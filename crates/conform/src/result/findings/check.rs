@@ -1,9 +1,9 @@
 //! Findings of a check besides its verdict.
 
-use reachtube_robot::JointKind;
 use reachtube_scalar::number::{at_least, counted};
 
 use crate::data::recordings::Recordings;
+use crate::data::signals::Signals;
 use crate::data::suite::Suite;
 use crate::model::other_data::{OtherData, Replaced};
 use crate::next_motion::growth::Growth;
@@ -18,8 +18,8 @@ const MOST_GROWTH: f64 = 100.0;
 const MOST_FILES: usize = 3;
 
 /// Which set would have to grow to enclose the recordings, and by how much.
-pub(crate) fn growth_needed(growth: &Growth, kinds: &[JointKind]) -> Finding {
-    let ways = ways(growth, kinds);
+pub(crate) fn growth_needed(growth: &Growth, signals: &Signals) -> Finding {
+    let ways = ways(growth, signals);
     let helps = |factor: &f64| *factor <= MOST_GROWTH;
     let useless = |(name, factor): &(&str, Option<f64>)| {
         let set = name.split_once(' ').map_or(*name, |(set, _)| set);
@@ -43,8 +43,8 @@ pub(crate) fn growth_needed(growth: &Growth, kinds: &[JointKind]) -> Finding {
 }
 
 /// Returns the first way in which the sets could grow to enclose the recordings.
-pub(crate) fn least_growth(growth: &Growth, kinds: &[JointKind]) -> String {
-    ways(growth, kinds).swap_remove(0)
+pub(crate) fn least_growth(growth: &Growth, signals: &Signals) -> String {
+    ways(growth, signals).swap_remove(0)
 }
 
 /// Why it cannot be known whether the recordings were used in the fit.
@@ -144,7 +144,7 @@ fn widened(growth: &Growth) -> [(&'static str, Option<f64>); 3] {
 }
 
 /// Returns the ways in which the sets could grow to enclose the recordings; V comes last.
-fn ways(growth: &Growth, kinds: &[JointKind]) -> Vec<String> {
+fn ways(growth: &Growth, signals: &Signals) -> Vec<String> {
     let wide = |(name, factor): (&str, Option<f64>)| {
         let factor = factor.filter(|factor| *factor <= MOST_GROWTH)?;
         Some(format!("{name} {} times as wide", at_least(factor)))
@@ -152,9 +152,9 @@ fn ways(growth: &Growth, kinds: &[JointKind]) -> Vec<String> {
     let noise = format!(
         "V is wider by {} {} and {} {}",
         at_least(growth.noise_position),
-        JointKind::any_unit(kinds, JointKind::position_unit),
+        signals.units_of_state(0).any(),
         at_least(growth.noise_velocity),
-        JointKind::any_unit(kinds, JointKind::velocity_unit)
+        signals.units_of_state(1).any()
     );
     widened(growth).into_iter().filter_map(wide).chain([noise]).collect()
 }
@@ -172,7 +172,7 @@ mod tests {
             noise_position: 0.1,
             noise_velocity: 0.2,
         };
-        let finding = growth_needed(&growth, &[JointKind::Revolute]);
+        let finding = growth_needed(&growth, &Signals::default());
         assert_eq!(finding.numbers["input_set"], 1.25);
         let text = finding.text;
         assert!(text.contains("covered if U is 1.250 times as wide, or if X0 and U"), "{text}");

@@ -12,7 +12,7 @@ use reachtube_finding::{Finding, Severity};
 /// The meaning of the table of the sets without each motion, and the motion that the others
 /// foretell least; `None` if there is no table to expect.
 pub(crate) fn left_out(model: &Model) -> Option<Finding> {
-    let is_linear = model.drive.acceleration.is_empty();
+    let is_linear = !model.a.is_empty();
     let text = match (model.left_out.is_empty(), model.data.motions()) {
         (true, 0 | 1) => return None,
         (true, _) if is_linear => return None,

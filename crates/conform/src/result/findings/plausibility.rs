@@ -1,15 +1,11 @@
 //! What is implausible about the sets, and why.
 
 use crate::fit::record::Overfit;
-use crate::plausibility::cause::Cause;
 use crate::plausibility::warning::{Remark, Warning, WarningKind};
 use crate::result::code::Code;
 use crate::result::findings::words::listed;
 use reachtube_finding::{Finding, Remedy, Severity};
 use reachtube_scalar::number::{four_decimals, plural};
-
-/// The horizon that is proposed for long recordings, s.
-const FIRST_HORIZON: f64 = 0.5;
 
 impl From<&Warning> for Finding {
     /// Makes the finding of a warning, as model files have it.
@@ -56,6 +52,24 @@ impl Warning {
         let remedy = (kind == WarningKind::InitialSetStarts)
             .then(|| Remedy::new("initial-limit", "positions"));
         Self { kind, joints, text: format!("{}: {}.", words(kind), texts.join("; ")), remedy }
+    }
+
+    /// Makes the warning that names the most likely cause of others.
+    #[must_use]
+    pub fn of_cause(text: String, remedy: Option<Remedy>) -> Self {
+        Self::about_all(WarningKind::Cause, text, remedy)
+    }
+
+    /// Names a motion that was held out, and made calibration scale the sets.
+    pub(crate) fn of_held_out(motion: &str, fitted: &[String], factor: f64) -> Self {
+        let text = format!(
+            "The most likely cause: motion {motion}, which was held out, is unlike the motions \
+             that the sets were found with ({}), so that calibration scaled these sets by \
+             {factor:.2}. Record more motions to find the sets with, among them some like \
+             {motion}.",
+            listed(fitted)
+        );
+        Self::of_cause(text, None)
     }
 
     fn about_all(kind: WarningKind, text: String, remedy: Option<Remedy>) -> Self {
@@ -140,184 +154,9 @@ impl From<&Overfit> for Warning {
     }
 }
 
-impl From<&Cause> for Warning {
-    /// Reports the most likely cause of other warnings.
-    fn from(cause: &Cause) -> Self {
-        let mut remedy = None;
-        let text = match cause {
-            Cause::Reading { clause, kind, unexplained, as_stated } => {
-                remedy = kind.map(|kind| Remedy::new("torque", format!("{kind:?}").to_lowercase()));
-                format!(
-                    "The most likely cause: {clause}. So read, {} of the recorded input is not \
-                     explained by the recorded motion, and {} as stated.",
-                    percent(*unexplained),
-                    percent(*as_stated)
-                )
-            }
-            Cause::HeldOut { motion, fitted, factor } => format!(
-                "The most likely cause: motion {motion}, which was held out, is unlike the motions \
-                 that the sets were found with ({}), so that calibration scaled these sets by \
-                 {factor:.2}. Record more motions to find the sets with, among them some like \
-                 {motion}.",
-                listed(fitted)
-            ),
-            Cause::ExpansionPoint { distance, mean } => {
-                remedy = Some(Remedy::new("expansion", point(mean)));
-                format!(
-                    "The nominal motions follow the robot, and deviations from them the inertia at \
-                     the expansion point, from which the positions lie up to {distance:.2} rad. \
-                     The mean of the positions is a better point."
-                )
-            }
-            Cause::ConstantInertia { about_mean, can_follow_robot, .. } => {
-                remedy = Some(match (about_mean, can_follow_robot) {
-                    (Some((mean, _)), _) => Remedy::new("expansion", point(mean)),
-                    (None, true) => Remedy::new("equations", "robot"),
-                    (None, false) => Remedy::new("paper-model", "3"),
-                });
-                constant_inertia_words(cause)
-            }
-            Cause::Horizon { unexplained, longest } => {
-                remedy = Some(Remedy::new("horizon", format!("{FIRST_HORIZON}")));
-                format!(
-                    "The robot explains the recorded input but for {}. A prediction from the \
-                     recorded input alone widens with time, and the recordings last up to \
-                     {longest:.1} s. Predict over a shorter time.",
-                    percent(*unexplained)
-                )
-            }
-            Cause::Parameters { .. } => {
-                let (words, setting, value) = parameters_words(cause);
-                remedy = Some(Remedy::new(setting, value));
-                words
-            }
-        };
-        Self::about_all(WarningKind::Cause, text, remedy)
-    }
-}
-
-/// Returns the sentences about parameters that do not explain the recordings, and the setting that
-/// helps. What was done already is not proposed again.
-fn parameters_words(cause: &Cause) -> (String, &'static str, String) {
-    let Cause::Parameters { unexplained, is_identified, is_fitted, longest } = cause else {
-        return Default::default();
-    };
-    let (what_to_do, setting, value) = match (is_fitted, is_identified) {
-        (true, _) => (
-            "The nominal model was fitted for small sets already, so record more motions, or \
-             predict over a shorter time.",
-            "horizon",
-            half(*longest),
-        ),
-        (false, true) => (
-            "The robot was identified already, so fit the nominal model for small sets.",
-            "fit",
-            String::new(),
-        ),
-        (false, false) => (
-            "Check the robot's parameters, for example with `reachtube identify`, or fit the \
-             nominal model for small sets.",
-            "fit",
-            String::new(),
-        ),
-    };
-    let words = format!(
-        "Units, signs, kind of torque, order of joints and lags fit, but {} of the recorded input \
-         does not follow from the recorded motion. {what_to_do}",
-        percent(*unexplained)
-    );
-    (words, setting, value)
-}
-
-/// Returns the sentences about a model whose inertia is constant.
-fn constant_inertia_words(cause: &Cause) -> String {
-    let Cause::ConstantInertia { by_robot, by_model, distance, about_mean, can_follow_robot } =
-        cause
-    else {
-        return String::new();
-    };
-    let better = about_mean.as_ref().map(|(mean, unexplained)| {
-        let also = match can_follow_robot {
-            true => "Nominal motions by the robot's own equations follow the robot.",
-            false => "Model 3 of order 2 follows how the inertia changes.",
-        };
-        format!(
-            " About {}, the mean of the positions, {} is not explained. {also}",
-            point(mean),
-            percent(*unexplained)
-        )
-    });
-    format!(
-        "The robot explains the recordings, and model 1 does not: {} of the recorded input is not \
-         explained by the robot, and {} by the inertia at the expansion point, from which the \
-         positions lie up to {distance:.2} rad.{} Shorter windows lessen the error.",
-        percent(*by_robot),
-        percent(*by_model),
-        better.unwrap_or_default(),
-    )
-}
-
-/// Returns about half of a time, s.
-fn half(time: f64) -> String {
-    let half = 0.5 * time;
-    let unit = 10f64.powi(half.max(1e-3).log10().floor() as i32);
-    let text = format!("{:.3}", unit * (half / unit).floor().max(1.0));
-    text.trim_end_matches('0').trim_end_matches('.').into()
-}
-
-/// Returns a position as settings have it.
-fn point(q: &[f64]) -> String {
-    q.iter().map(|q| format!("{q:.2}")).collect::<Vec<_>>().join(",")
-}
-
-fn percent(part: f64) -> String {
-    match part {
-        ..0.01 => "less than 1 %".into(),
-        _ => format!("{:.0} %", 100.0 * part.min(1.0)),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use reachtube_finding::FrontEnd;
-
-    #[test]
-    fn a_small_part_is_not_printed_as_none() {
-        assert_eq!([0.004, 0.02, 7.0].map(percent), ["less than 1 %", "2 %", "100 %"]);
-    }
-
-    #[test]
-    fn a_cause_names_its_remedy_as_data() {
-        let kind = Some(reachtube_recordings::Torque::Motor);
-        let clause = "the torques are of the kind `motor`".into();
-        let cause = Cause::Reading { clause, kind, unexplained: 0.07, as_stated: 3.0 };
-        let finding = Finding::from(&Warning::from(&cause));
-        let written = finding.written_for(FrontEnd::Python);
-        assert!(written.contains("of the kind `motor`. So read, 7 % of"), "{written}");
-        assert!(written.contains("and 100 % as stated. `torque=\"motor\"` reads"), "{written}");
-    }
-
-    #[test]
-    fn what_was_applied_is_not_proposed_again() {
-        let written = |cause: &Cause| Finding::from(&Warning::from(cause)).to_string();
-        let long = written(&Cause::Horizon { unexplained: 0.1, longest: 31.2 });
-        assert!(
-            long.contains("last up to 31.2 s") && long.contains("`--horizon 0.5` cuts"),
-            "{long}"
-        );
-        let parameters = |is_identified, is_fitted| {
-            let (unexplained, longest) = (0.1, 0.5);
-            written(&Cause::Parameters { unexplained, is_identified, is_fitted, longest })
-        };
-        let first = parameters(false, false);
-        assert!(first.contains("`reachtube identify`") && first.contains("`--fit`"), "{first}");
-        let identified = parameters(true, false);
-        assert!(!identified.contains("`reachtube identify`"), "{identified}");
-        assert!(identified.ends_with("`--fit` names the parameters to fit."), "{identified}");
-        let fitted = parameters(true, true);
-        assert!(!fitted.contains("--fit") && fitted.contains("`--horizon 0.2`"), "{fitted}");
-    }
 
     #[test]
     fn a_warning_of_an_earlier_version_is_read() {

@@ -1,7 +1,6 @@
 //! What U says of joints that stick.
 
 use reachtube_reach::Disturbance;
-use reachtube_robot::JointKind;
 use reachtube_scalar::number::{at_least, four_decimals};
 
 use crate::model::file::Model;
@@ -16,9 +15,9 @@ impl Model {
     pub fn finding_of_stiction(&self, rests: &[Stiction]) -> Option<Finding> {
         let lack = |rest: &&Stiction| rest.torque - rest.room;
         let worst = rests.iter().max_by(|a, b| lack(a).total_cmp(&lack(b)))?;
-        let name = |rest: &Stiction| self.drive.robot.joints[rest.joint - 1].name.clone();
+        let name = |rest: &Stiction| self.signals.parts[rest.joint - 1].name.clone();
         let open: Vec<String> = rests.iter().filter(|rest| !rest.is_covered()).map(name).collect();
-        let unit = JointKind::any_unit(&self.drive.robot.kinds(), JointKind::force_unit);
+        let unit = self.signals.units_of_inputs().any();
         let is_held = self.settings.disturbance == Disturbance::Sample;
         let (mut severity, mut remedy) = (Severity::Info, None);
         let text = if !open.is_empty() {

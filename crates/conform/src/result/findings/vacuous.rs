@@ -1,8 +1,8 @@
 //! Which sets are vacuous, although they were proved to enclose every recording.
 
-use reachtube_robot::JointKind;
 use reachtube_scalar::number::{counted, plural};
 
+use crate::data::signals::Signals;
 use crate::model::file::Model;
 use crate::plausibility::{Usefulness, Vacuity, VacuousSet};
 use crate::result::code::Code;
@@ -15,12 +15,10 @@ const MOST_SETS: usize = 3;
 /// Which sets of a model are vacuous; none of a model that is useful or was not proved.
 pub(crate) fn vacuous(model: &Model) -> Option<Finding> {
     let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
-    let kinds = model.drive.robot.kinds();
     let sets = worst_first(said);
     let place = place(&sets);
     let first = sets.iter().take(MOST_SETS);
-    let mut words: Vec<String> =
-        first.map(|set| described(set, said, kinds[set.joint - 1])).collect();
+    let mut words: Vec<String> = first.map(|set| described(set, said, &model.signals)).collect();
     let more = sets.len().saturating_sub(MOST_SETS);
     if more > 0 {
         words.push(format!("{} more", counted(more, "set")));
@@ -42,8 +40,7 @@ pub(crate) fn vacuous_in_brief(model: &Model) -> Option<String> {
     let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
     let sets = worst_first(said);
     let worst = sets.first()?;
-    let kind = model.drive.robot.kinds()[worst.joint - 1];
-    Some(format!("vacuous for {}: {}", place(&sets), described(worst, said, kind)))
+    Some(format!("vacuous for {}: {}", place(&sets), described(worst, said, &model.signals)))
 }
 
 /// Returns the vacuous sets, the worst first.
@@ -68,8 +65,10 @@ fn factor(set: &Vacuity) -> f64 {
 }
 
 /// Describes a vacuous set.
-fn described(set: &Vacuity, said: &Usefulness, kind: JointKind) -> String {
+fn described(set: &Vacuity, said: &Usefulness, signals: &Signals) -> String {
     let Vacuity { joint, size, .. } = set;
+    let n = signals.inputs.len();
+    let [position, velocity] = [joint - 1, n + joint - 1].map(|state| &signals.states[state].unit);
     let times = match factor(set) {
         factor if factor < 100.0 => format!("{factor:.1} times"),
         factor => format!("{factor:.0e} times"),
@@ -80,15 +79,15 @@ fn described(set: &Vacuity, said: &Usefulness, kind: JointKind) -> String {
     };
     match set.set {
         VacuousSet::Reachable => {
-            let (unit, end) = (kind.position_unit(), said.horizon);
+            let (unit, end) = (position, said.horizon);
             format!(
                 "the set of q{joint} is {size} {unit} wide after {end:.3} s, {times} its motion"
             )
         }
         VacuousSet::InitialPosition | VacuousSet::InitialVelocity => {
             let (state, unit) = match set.set {
-                VacuousSet::InitialPosition => ("q", kind.position_unit()),
-                _ => ("qd", kind.velocity_unit()),
+                VacuousSet::InitialPosition => ("q", position),
+                _ => ("qd", velocity),
             };
             format!(
                 "X0 of {state}{joint} is {size} {unit} wide, {times} what the recorded starts and \
@@ -96,7 +95,7 @@ fn described(set: &Vacuity, said: &Usefulness, kind: JointKind) -> String {
             )
         }
         VacuousSet::Input => {
-            let unit = kind.force_unit();
+            let unit = &signals.inputs[joint - 1].unit;
             format!("U of joint {joint} reaches {size} {unit}, {times} the largest input")
         }
     }

@@ -1,11 +1,11 @@
 //! Findings about the proof, its counterexamples, and the cost of the sets.
 
-use reachtube_robot::JointKind;
 use reachtube_scalar::number::{counted, four_decimals, plural};
 
 use crate::claim::verdict::Verdict;
 use crate::claim::witness::{PointVerdict, PointWitness};
 use crate::data::settings::{Settings, States};
+use crate::data::signals::Signals;
 use crate::model::file::Model;
 use crate::result::code::Code;
 use crate::search::found::SearchSummary;
@@ -143,7 +143,7 @@ pub(crate) fn points(verdict: &Verdict, states: States) -> Option<Finding> {
 }
 
 /// The point that lies furthest outside.
-pub(crate) fn furthest_point(worst: &PointWitness, kinds: &[JointKind]) -> Finding {
+pub(crate) fn furthest_point(worst: &PointWitness, signals: &Signals) -> Finding {
     let PointWitness { run, time, combination, value, reach, .. } = worst;
     let state = worst.leading_state();
     let text = format!(
@@ -151,7 +151,7 @@ pub(crate) fn furthest_point(worst: &PointWitness, kinds: &[JointKind]) -> Findi
          centre of the set, which reaches {} {unit}.",
         four_decimals(*value),
         four_decimals(*reach),
-        unit = state.kind.unit(kinds[state.joint].recorded_units()),
+        unit = signals.unit(state),
     );
     Finding::new(Severity::Failure, Code::FurthestOutside, text)
         .at(run)
@@ -161,8 +161,8 @@ pub(crate) fn furthest_point(worst: &PointWitness, kinds: &[JointKind]) -> Findi
 }
 
 /// The value that lies furthest outside.
-pub(crate) fn furthest_value(worst: &Witness, kinds: &[JointKind]) -> Finding {
-    let text = format!("Furthest outside: {}.", place_outside(worst, kinds));
+pub(crate) fn furthest_value(worst: &Witness, signals: &Signals) -> Finding {
+    let text = format!("Furthest outside: {}.", place_outside(worst, signals));
     Finding::new(Severity::Failure, Code::FurthestOutside, text)
         .at(&worst.run)
         .with("time", worst.time)
@@ -171,8 +171,8 @@ pub(crate) fn furthest_value(worst: &Witness, kinds: &[JointKind]) -> Finding {
 }
 
 /// Describes a value outside the reachable set in one line.
-pub(crate) fn place_outside(place: &Witness, kinds: &[JointKind]) -> String {
-    let unit = place.state.kind.unit(kinds[place.state.joint].recorded_units());
+pub(crate) fn place_outside(place: &Witness, signals: &Signals) -> String {
+    let unit = signals.unit(place.state);
     format!(
         "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
         place.run,

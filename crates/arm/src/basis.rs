@@ -1,0 +1,77 @@
+use std::borrow::Cow;
+
+use reachtube_abstraction::{Abstraction, PolynomialModel};
+use reachtube_conform::{Error, Result, Settings, Setup};
+use reachtube_robot::Robot;
+
+use crate::settings::ArmSettings;
+use crate::setup::{setup, setup_of};
+use crate::system::system_of;
+
+/// What the nominal model is made of.
+#[derive(Debug, Clone)]
+pub enum Basis {
+    /// A robot, whose model the settings select.
+    Robot(Box<Robot>),
+    /// A model of a robot, with its own expansion point and order.
+    Abstraction(Box<PolynomialModel>),
+}
+
+impl From<Robot> for Basis {
+    fn from(robot: Robot) -> Self {
+        Self::Robot(Box::new(robot))
+    }
+}
+
+impl From<PolynomialModel> for Basis {
+    fn from(model: PolynomialModel) -> Self {
+        Self::Abstraction(Box::new(model))
+    }
+}
+
+impl Basis {
+    /// Returns the number of joints n.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        match self {
+            Self::Robot(robot) => robot.joint_count(),
+            Self::Abstraction(model) => model.joints(),
+        }
+    }
+
+    /// Returns the robot.
+    ///
+    /// # Errors
+    ///
+    /// A description in the file of an abstraction that is none.
+    pub fn robot(&self) -> Result<Cow<'_, Robot>> {
+        Ok(match self {
+            Self::Robot(robot) => Cow::Borrowed(robot),
+            Self::Abstraction(model) => {
+                Cow::Owned(Robot::from_description(model.robot()).map_err(Error::other)?)
+            }
+        })
+    }
+
+    /// Makes the setup of a conformance.
+    ///
+    /// # Errors
+    ///
+    /// As [`setup`]; an abstraction that does not fit the settings; a robot that is not physical.
+    pub fn setup(self, arm: ArmSettings, settings: Settings) -> Result<Setup> {
+        match self {
+            Self::Robot(robot) => {
+                robot.check_physical().map_err(Error::other)?;
+                setup(*robot, arm, settings)
+            }
+            Self::Abstraction(model) => {
+                let robot = Robot::from_description(model.robot()).map_err(Error::other)?;
+                robot.check_physical().map_err(Error::other)?;
+                let abstraction = Abstraction { model: model.kind(), order: model.order() };
+                let expansion_point = model.expansion_point().clone();
+                let arm = ArmSettings { abstraction, expansion_point, ..arm };
+                setup_of(robot, system_of(*model, settings.method), arm, settings)
+            }
+        }
+    }
+}

@@ -1,0 +1,78 @@
+use std::sync::Arc;
+
+use reachtube_conform::{Error, Problem, Result, Settings, Setup};
+use reachtube_finding::Advice;
+use reachtube_reach::System;
+use reachtube_robot::Robot;
+
+use crate::arm::Arm;
+use crate::settings::{ArmSettings, Equations};
+use crate::system::system;
+
+/// Makes the setup of a robot with the model that settings select.
+///
+/// # Errors
+///
+/// Settings that do not fit the robot, a robot that is not physical at the expansion point.
+pub fn setup(robot: Robot, arm: ArmSettings, settings: Settings) -> Result<Setup> {
+    settings.validate(robot.joint_count())?;
+    let dynamics = system(&robot, &arm, settings.method)?;
+    setup_of(robot, dynamics, arm, settings)
+}
+
+/// Makes the setup of a robot with a model of its motion.
+///
+/// # Errors
+///
+/// [`Error::Drive`] for the robot's own equations about a model that is not linear; settings that
+/// do not fit.
+pub fn setup_of(
+    robot: Robot,
+    dynamics: System,
+    arm: ArmSettings,
+    settings: Settings,
+) -> Result<Setup> {
+    if arm.equations == Equations::Robot && dynamics.linear_system().is_none() {
+        return Err(not_linear());
+    }
+    Setup::new(Arc::new(Arm::new(robot, None, arm)), dynamics, settings)
+}
+
+/// Nominal motions by the robot's own equations were asked of a model that is not linear.
+pub(crate) fn not_linear() -> Error {
+    let words = "nominal motions by the robot's own equations need a linear model, which then \
+                 describes deviations only; use model 1 of order 1 with the method program, or let \
+                 nominal motions follow the model's equations";
+    Error::Drive(Advice::from(words).with("equations", "model"))
+}
+
+/// What is driven by an arm.
+pub trait OfArm {
+    /// Returns the arm.
+    ///
+    /// # Panics
+    ///
+    /// Where something else drives the system.
+    fn arm(&self) -> &Arm;
+
+    /// Returns the robot.
+    ///
+    /// # Panics
+    ///
+    /// As [`arm`](Self::arm).
+    fn robot(&self) -> &Robot {
+        self.arm().robot()
+    }
+}
+
+impl OfArm for Setup {
+    fn arm(&self) -> &Arm {
+        self.drive().any().downcast_ref().expect("an arm drives the system")
+    }
+}
+
+impl OfArm for Problem {
+    fn arm(&self) -> &Arm {
+        self.setup().arm()
+    }
+}
