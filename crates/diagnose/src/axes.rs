@@ -7,7 +7,7 @@ pub fn axes(robot: &Robot) -> Vec<Axis> {
     let axis = |(joint, described): (&Joint, &JointDescription)| Axis {
         name: joint.name.clone(),
         is_revolute: joint.kind == JointKind::Revolute,
-        units: joint.kind.recorded_units(),
+        units: [joint.kind.position_unit(), joint.kind.velocity_unit(), joint.kind.force_unit()],
         position_limits: described.position_limits,
         velocity_limit: joint.velocity_limit,
     };

@@ -15,15 +15,6 @@ pub enum StateKind {
 }
 
 impl StateKind {
-    /// Returns the unit of this kind among the units of a joint's position, velocity and torque.
-    #[must_use]
-    pub fn unit(self, [position, velocity, _]: [&'static str; 3]) -> &'static str {
-        match self {
-            Self::Position => position,
-            Self::Velocity => velocity,
-        }
-    }
-
     fn prefix(self) -> &'static str {
         match self {
             Self::Position => "q",

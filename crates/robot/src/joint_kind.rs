@@ -37,12 +37,6 @@ impl JointKind {
         *self == Self::Revolute
     }
 
-    /// Returns the units of position, velocity and torque.
-    #[must_use]
-    pub fn recorded_units(self) -> [&'static str; 3] {
-        [self.position_unit(), self.velocity_unit(), self.force_unit()]
-    }
-
     /// Returns the unit of a position.
     #[must_use]
     pub fn position_unit(self) -> &'static str {

@@ -65,7 +65,7 @@ impl Checked<'_> {
         };
         let has_no_unit = self.compensated && torque_unit.is_some();
         let offset = || {
-            let (logs, warning) = if has_no_unit { None } else { offset() }?;
+            let (logs, warning) = offset()?;
             let is_one = gains.is_empty() || self.gains_agree(&logs);
             is_one.then(|| Implausible::new(warning))
         };
@@ -75,7 +75,7 @@ impl Checked<'_> {
             let text = fault.warning(self.robot, clearest);
             Implausible { text, columns: (!is_small).then_some(fault) }
         });
-        let fault = fault.or_else(offset);
+        let fault = if has_no_unit { None } else { fault.or_else(offset) };
         let gains = if fault.is_some() || has_no_unit { Vec::new() } else { gains };
         let others = self.driving_friction().chain(gains).chain(self.unexplained_torque());
         fault.into_iter().chain(torque_unit).chain(others.map(Implausible::new)).collect()
