@@ -82,7 +82,7 @@ impl Linearisation {
     /// derivatives are evaluated at several states at once.
     ///
     /// `points` has the states (2n) and inputs (n), as [`at`](Self::at) takes them.
-    pub fn along(
+    pub(crate) fn along(
         &mut self,
         points: &[(&[f64], &[f64])],
         mut visit: impl FnMut(usize, &DMatrix<f64>, &DMatrix<f64>),

@@ -67,7 +67,7 @@ impl Cutting {
 
 fn whole_logs(logs: &[Log]) -> Vec<Cut> {
     let whole = |(log, samples): (usize, &Log)| Cut::new(log, 0..samples.len());
-    logs.iter().enumerate().filter(|(_, log)| !log.is_empty()).map(whole).collect()
+    logs.iter().enumerate().filter(|(_, log)| log.len() > 0).map(whole).collect()
 }
 
 fn marked_runs(logs: &[Log]) -> Result<Vec<Cut>> {

@@ -146,12 +146,6 @@ impl Log {
         self.samples.len()
     }
 
-    /// Returns whether there is no sample.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.samples.is_empty()
-    }
-
     /// Returns notes for the user: which times were taken, and where each joint was found.
     #[must_use]
     pub fn notes(&self) -> &[String] {

@@ -1,6 +1,5 @@
 //! The adaptive method of Dormand and Prince.
 
-use crate::dense_step::DenseStep;
 use crate::outcome::{Cause, Outcome, is_within};
 use crate::run::InitialValueProblem;
 use crate::runge_kutta::add_scaled;
@@ -11,8 +10,8 @@ use crate::vector_field::VectorField;
 /// The adaptive integrator of Dormand & Prince (J. Comput. Appl. Math. 6, 1980) with an embedded
 /// pair of orders 5 and 4.
 ///
-/// It has step size control and an interpolant of order 4 (Hairer, Nørsett & Wanner, Solving
-/// Ordinary Differential Equations I, 1993, sec. II.6). It does not allocate after construction.
+/// It has step size control (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I,
+/// 1993, sec. II.4). It does not allocate after construction.
 ///
 /// # Examples
 ///
@@ -45,7 +44,7 @@ pub struct DormandPrince {
     slopes: [Vec<f64>; 7],
     /// The state at a stage, and finally the state after the step (n).
     next: Vec<f64>,
-    /// The state of a simulated run, or an interpolated state (n).
+    /// The state of a simulated run (n).
     state: Vec<f64>,
 }
 
@@ -99,26 +98,9 @@ impl DormandPrince {
     pub fn integrate<F: VectorField<f64>>(
         &mut self,
         field: &mut F,
-        span: [f64; 2],
-        x: &mut [f64],
-        u: &[f64],
-    ) -> Outcome {
-        self.integrate_dense(field, span, x, u, |_| {})
-    }
-
-    /// Integrates like [`integrate`](Self::integrate) and calls `observe` with each accepted step,
-    /// which interpolates the solution.
-    ///
-    /// # Panics
-    ///
-    /// Panics if the length of x differs from the dimension of the integrator.
-    pub fn integrate_dense<F: VectorField<f64>>(
-        &mut self,
-        field: &mut F,
         [mut t, end]: [f64; 2],
         x: &mut [f64],
         u: &[f64],
-        mut observe: impl FnMut(&DenseStep<'_>),
     ) -> Outcome {
         assert_eq!(
             x.len(),
@@ -149,10 +131,7 @@ impl DormandPrince {
             if error <= 1.0 {
                 // Acceptance. The last slope is the first one of the next step.
                 self.control.accept(h, error, h < proposal);
-                let start = t;
-                t = if is_last { end } else { start + h };
-                let (after, slopes) = (&self.next, &self.slopes);
-                observe(&DenseStep { start, end: t, size: h, before: x, after, slopes });
+                t = if is_last { end } else { t + h };
                 x.copy_from_slice(&self.next);
                 self.slopes.swap(0, 6);
             } else {
@@ -197,41 +176,6 @@ impl DormandPrince {
             observe(k + 1, &x);
         }
         self.state = x;
-        outcome
-    }
-
-    /// Samples the solution from x (n) at `times[0]` under one held input u (m).
-    ///
-    /// It calls `observe` with the index of each sample of `times` \[s\] (increasing) and the state
-    /// there (n). Samples come from the interpolant and need no further steps. Finally, x is the
-    /// state at the last time. A field may also generate its input from time and state.
-    ///
-    /// # Panics
-    ///
-    /// Panics if the length of x differs from the dimension of the integrator.
-    pub fn sample<F: VectorField<f64>>(
-        &mut self,
-        field: &mut F,
-        times: &[f64],
-        x: &mut [f64],
-        u: &[f64],
-        mut observe: impl FnMut(usize, &[f64]),
-    ) -> Outcome {
-        let (Some(start), Some(end)) = (times.first(), times.last()) else {
-            return Outcome::Reached;
-        };
-        self.control = StepControl::new();
-        let mut state = core::mem::take(&mut self.state);
-        observe(0, x);
-        let mut sampled = 1;
-        let outcome = self.integrate_dense(field, [*start, *end], x, u, |step| {
-            while sampled < times.len() && times[sampled] <= step.end() {
-                step.at(times[sampled], &mut state);
-                observe(sampled, &state);
-                sampled += 1;
-            }
-        });
-        self.state = state;
         outcome
     }
 

@@ -1,6 +1,5 @@
 #![doc = include_str!("../README.md")]
 
-mod dense_step;
 mod dormand_prince;
 mod ensemble;
 mod outcome;

@@ -26,17 +26,6 @@ pub(crate) const ERROR_WEIGHTS: [f64; 7] = [
     -1.0 / 40.0,
 ];
 
-/// Weights of the highest coefficient of the interpolant.
-pub(crate) const INTERPOLANT_WEIGHTS: [f64; 7] = [
-    -12715105075.0 / 11282082432.0,
-    0.0,
-    87487479700.0 / 32700410799.0,
-    -10690763975.0 / 1880347072.0,
-    701980252875.0 / 199316789632.0,
-    -1453857185.0 / 822651844.0,
-    69997945.0 / 29380423.0,
-];
-
 /// Returns Σ_j weights_j · slopes_j of entry i of the state.
 pub(crate) fn weighted_sum(weights: &[f64; 7], slopes: &[Vec<f64>; 7], i: usize) -> f64 {
     weights.iter().zip(slopes).map(|(weight, slope)| weight * slope[i]).sum()

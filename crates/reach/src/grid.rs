@@ -83,11 +83,6 @@ impl TimeGrid {
         self.times.len()
     }
 
-    /// Returns whether the grid has no sample.
-    pub fn is_empty(&self) -> bool {
-        self.times.is_empty()
-    }
-
     /// Encloses the time in s between samples k and k + 1.
     ///
     /// # Guarantee

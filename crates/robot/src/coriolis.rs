@@ -29,14 +29,6 @@ impl Robot {
         self.newton_euler([sin, cos, qd, zero_acceleration], GravityLoad::None, links, c);
     }
 
-    /// Returns the Coriolis and centripetal torque c(q, q̇) \[N m\] at q \[rad\], q̇ \[rad/s\].
-    pub fn coriolis_torque(&self, q: &[f64], qd: &[f64]) -> DVector<f64> {
-        let (sin, cos) = self.sin_cos(q);
-        let mut c = DVector::zeros(q.len());
-        self.coriolis(&sin, &cos, qd, &mut Workspace::new(self), c.as_mut_slice());
-        c
-    }
-
     /// Returns the torque M(q) q̈ + c(q, q̇) \[N m\] that a motion takes without gravity and
     /// friction, at q \[rad\], q̇ \[rad/s\] and q̈ \[rad/s²\].
     pub fn motion_torque(&self, q: &[f64], qd: &[f64], qdd: &[f64]) -> DVector<f64> {

@@ -7,7 +7,7 @@ use crate::link::Link;
 use crate::motion::{AccelerationGradient, Motion};
 use crate::placement::{Placement, rotation_x, rotation_z};
 use crate::robot::Robot;
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use reachtube_scalar::Scalar;
 
 /// Scratch memory and constants of [`Robot::inertial_regressor`] for one robot and one scalar.
@@ -280,14 +280,6 @@ impl Robot {
                 twists[j].powers(&motion, &gradient, block);
             }
         }
-    }
-
-    /// Returns the regressor \[n x 10 n\] at q \[rad\], q̇ \[rad/s\], q̈ \[rad/s²\]; it allocates.
-    pub fn inertial_regressor_matrix(&self, q: &[f64], qd: &[f64], qdd: &[f64]) -> DMatrix<f64> {
-        let (n, (sin, cos)) = (self.joint_count(), self.sin_cos(q));
-        let mut y = vec![0.0; INERTIAL * n * n];
-        self.inertial_regressor(&sin, &cos, qd, qdd, &mut RegressorWorkspace::new(self), &mut y);
-        DMatrix::from_row_slice(n, INERTIAL * n, &y)
     }
 }
 

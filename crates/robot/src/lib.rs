@@ -34,7 +34,6 @@ mod random_states;
 mod regressor;
 mod rnea;
 mod robot;
-mod simulate;
 mod singular_values;
 mod text_file;
 mod urdf;
@@ -46,7 +45,7 @@ pub use description::joint_description::{
     Convention, Dh, FrictionDescription, FrictionErrors, GravityMoments, InertiaPoint,
     JointDescription, PlacementDescription,
 };
-pub use description::robot_description::{ParameterSet, RobotDescription, SCHEMA_VERSION};
+pub use description::robot_description::{ParameterSet, RobotDescription};
 pub use error::RobotError;
 pub use excitation::evaluation::Quality;
 pub use excitation::fourier::MotionSample;

@@ -48,7 +48,8 @@ fn coriolis_terms_of_model_2_are_exact_from_order_12() {
             let rate = model.rate(&model.state(&q, &qd), &u);
             let expected =
                 mass.clone().cholesky().unwrap().solve(&nalgebra::DVector::from_fn(6, |i, _| {
-                    u[i] - robot.coriolis_torque(&q, &qd)[i] - robot.viscous_torque(&qd)[i]
+                    u[i] - robot.motion_torque(&q, &qd, &vec![0.0; q.len()])[i]
+                        - robot.viscous_torque(&qd)[i]
                 }));
             let scale = largest(expected.iter().copied());
             worst = worst.max(largest((0..6).map(|i| rate[6 + i] - expected[i])) / scale);

@@ -14,7 +14,8 @@ fn a_robot_of_seven_joints_has_28_variables() {
     let error = largest((0..7).map(|i| rate[7 + i] - expected[i]));
     assert!(error < 1e-3 * largest(expected.iter().copied()), "{error} of {expected:?}");
     let mass = robot.mass_matrix(&[0.0; 7]).cholesky().unwrap();
-    let load = nalgebra::DVector::from_vec(u.clone()) - robot.coriolis_torque(&q, &qd);
+    let load =
+        nalgebra::DVector::from_vec(u.clone()) - robot.motion_torque(&q, &qd, &vec![0.0; q.len()]);
     let (rate, expected) = (two.rate(&two.state(&q, &qd), &u), mass.solve(&load));
     assert!(
         largest((0..7).map(|i| rate[7 + i] - expected[i])) < 1e-12 * expected.amax(),

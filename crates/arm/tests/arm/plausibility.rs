@@ -65,7 +65,9 @@ fn recorded(robot: &Robot, written: &Written) -> MemoryRuns {
                 let qd = value(&|w, x| w * x.cos());
                 let qdd = value(&|w, x| -w * w * x.sin());
                 let inertia = robot.mass_matrix(&q) * nalgebra::DVector::from_vec(qdd);
-                let u = inertia + robot.coriolis_torque(&q, &qd) + robot.viscous_torque(&qd);
+                let u = inertia
+                    + robot.motion_torque(&q, &qd, &vec![0.0; q.len()])
+                    + robot.viscous_torque(&qd);
                 let motor = robot.motor_torque_from_input(&q, &qd, u.as_slice());
                 let noisy = |x: &f64| written.angle * (x + 1e-5 * random.signed());
                 states.extend(q.iter().chain(&qd).map(noisy).collect::<Vec<_>>());

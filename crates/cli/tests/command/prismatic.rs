@@ -3,7 +3,8 @@
 
 use std::fmt::Write;
 
-use reachtube_robot::Robot;
+use reachtube_ode::RungeKutta4;
+use reachtube_robot::{DrivenBy, Robot, RobotField};
 use serde_json::Value;
 
 use crate::fixture::Lab;
@@ -118,14 +119,17 @@ fn disturbed(robot: &Robot, amplitude: f64, deviation: f64) -> String {
     let applied: Vec<Vec<f64>> =
         (0..60).map(|k| (0..n).map(|j| torque(k, j) + deviation * radius[j]).collect()).collect();
     let start: Vec<f64> = [0.1, -0.2, 0.1].iter().map(|q| q + 0.001 * deviation).collect();
-    let moved = robot.simulate(&start, &[0.0; 3], &applied, step, 8);
+    let (mut field, mut method) = (RobotField::new(robot, DrivenBy::Motor), RungeKutta4::new(6));
+    let mut x = [start, vec![0.0; 3]].concat();
     let mut text = header(n);
     for k in 0..=60 {
         write!(text, "{:.3}", step * f64::from(k)).unwrap();
-        let values = moved.q[k as usize].iter().chain(&moved.qd[k as usize]);
-        values.for_each(|x| write!(text, ",{x:?}").unwrap());
+        x.iter().for_each(|x| write!(text, ",{x:?}").unwrap());
         (0..n).for_each(|j| write!(text, ",{:?}", torque(k, j)).unwrap());
         text.push('\n');
+        if let Some(torques) = applied.get(k as usize) {
+            method.integrate(&mut field, [0.0, step], 8, &mut x, torques);
+        }
     }
     text
 }

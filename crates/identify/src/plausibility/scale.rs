@@ -195,7 +195,7 @@ fn length(robot: &Robot) -> f64 {
 /// Returns at least [`POSITIONS`] positions, evenly spread over the logs \[rad\].
 fn positions(logs: &[PreparedLog]) -> Vec<&[f64]> {
     let logs: Vec<&PreparedLog> =
-        spread(logs, POSITIONS).into_iter().filter(|l| !l.is_empty()).collect();
+        spread(logs, POSITIONS).into_iter().filter(|l| l.len() > 0).collect();
     let each = POSITIONS.div_ceil(logs.len().max(1));
     let position = |log: &'_ PreparedLog, k: usize| (2 * k + 1) * log.len() / (2 * each);
     logs.into_iter().flat_map(|log| (0..each).map(move |k| log.q(position(log, k)))).collect()

@@ -83,12 +83,6 @@ impl PreparedLog {
         self.q.len() / self.joints
     }
 
-    /// Returns whether there is no sample.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.q.is_empty()
-    }
-
     /// Returns the positions at sample k \[rad\], n entries.
     #[must_use]
     pub fn q(&self, k: usize) -> &[f64] {

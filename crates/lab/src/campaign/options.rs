@@ -81,8 +81,7 @@ impl CampaignOptions {
     }
 
     /// Returns these sizes without recordings to identify with.
-    #[must_use]
-    pub fn suites_only(self) -> Self {
+    pub(crate) fn suites_only(self) -> Self {
         Self { rest: 0, one_joint: 0, excitation: 0, validation: 0, ..self }
     }
 

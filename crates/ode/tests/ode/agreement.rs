@@ -45,49 +45,6 @@ proptest! {
         prop_assert!(outcome.is_reached());
         prop_assert!(worst < 1e-8, "{}", worst);
     }
-
-    #[test]
-    fn samples_agree_with_the_solution_and_need_no_evaluations(
-        start in prop::array::uniform2(-2.0..2.0f64),
-        count in 2..200usize,
-    ) {
-        let times: Vec<f64> =
-            (0..count).map(|k| 0.3 + 4.0 * k as f64 / (count - 1) as f64).collect();
-        let evaluations = core::cell::Cell::new(0);
-        let mut counted = |t: f64, x: &[f64], u: &[f64], dx: &mut [f64]| {
-            evaluations.set(evaluations.get() + 1);
-            pendulum(t, x, u, dx);
-        };
-        let mut ends = [start; 2];
-        let mut samples = Vec::new();
-        let mut solver = DormandPrince::new(2, FINE);
-        let outcome = solver.sample(&mut counted, &times, &mut ends[0], &[0.5], |k, x| {
-            assert_eq!(k, samples.len());
-            samples.push([x[0], x[1]]);
-        });
-        prop_assert!(outcome.is_reached());
-        let with_samples = evaluations.replace(0);
-        let span = [times[0], times[count - 1]];
-        prop_assert!(
-            DormandPrince::new(2, FINE)
-                .integrate(&mut counted, span, &mut ends[1], &[0.5])
-                .is_reached()
-        );
-        prop_assert_eq!(with_samples, evaluations.get());
-        prop_assert_eq!(ends[0], ends[1]);
-        prop_assert_eq!(samples.len(), count);
-        let mut x = start;
-        for k in 1..count {
-            RungeKutta4::new(2).integrate(
-                &mut pendulum,
-                [times[k - 1], times[k]],
-                2000 / count + 2,
-                &mut x,
-                &[0.5],
-            );
-            prop_assert!(distance(&x, &samples[k]) < 1e-7, "sample {}", k);
-        }
-    }
 }
 
 #[test]

@@ -87,28 +87,6 @@ fn dormand_prince_is_of_order_5() {
     assert!((found - 5.0).abs() < 0.15, "order {found}");
 }
 
-/// Inside one step from an exact state, the error of an interpolant of order 4 grows with h⁵.
-#[test]
-fn dense_output_is_of_order_4() {
-    let error = |h: f64| {
-        let (mut solver, mut x, mut worst) = (one_step_solver(2), exact_chirp(0.5), 0.0_f64);
-        let mut steps = 0;
-        let outcome = solver.integrate_dense(&mut chirp, [0.5, 0.5 + h], &mut x, &[], |step| {
-            let mut inside = [0.0; 2];
-            for part in 0..=20 {
-                let t = step.start() + f64::from(part) / 20.0 * (step.end() - step.start());
-                step.at(t, &mut inside);
-                worst = worst.max(distance(&inside, &exact_chirp(t)));
-            }
-            steps += 1;
-        });
-        assert!(outcome.is_reached() && steps == 1);
-        (h, worst)
-    };
-    let found = order(&[error(0.08), error(0.02)]);
-    assert!((found - 5.0).abs() < 0.2, "order {found}");
-}
-
 #[test]
 fn errors_scale_with_the_tolerance_and_steps_with_its_fifth_root() {
     let run = |tolerance: f64| {

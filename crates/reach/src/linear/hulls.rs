@@ -69,11 +69,6 @@ impl ReachSets {
         self.centre.len() / self.dimension.max(1)
     }
 
-    /// Returns whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.centre.is_empty()
-    }
-
     /// Encloses the centre of the hull at sample k in state i.
     pub(crate) fn centre(&self, k: usize, i: usize) -> Interval {
         self.centre[k * self.dimension + i]

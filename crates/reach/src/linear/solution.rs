@@ -21,11 +21,6 @@ impl Trajectory {
         self.states.len() / self.dimension.max(1)
     }
 
-    /// Returns whether the trajectory has no sample.
-    pub fn is_empty(&self) -> bool {
-        self.states.is_empty()
-    }
-
     /// Returns the state at sample k, N intervals.
     pub fn state(&self, k: usize) -> &[Interval] {
         &self.states[k * self.dimension..(k + 1) * self.dimension]

@@ -82,11 +82,6 @@ impl StepBounds {
         self.bounds.len() / self.dimension.max(1)
     }
 
-    /// Returns whether there is no step.
-    pub fn is_empty(&self) -> bool {
-        self.bounds.is_empty()
-    }
-
     /// Returns the box of step k, from sample k to k + 1, N intervals.
     pub fn bounds(&self, k: usize) -> &[Interval] {
         &self.bounds[k * self.dimension..(k + 1) * self.dimension]

@@ -219,11 +219,6 @@ impl Flowpipe {
         self.samples.len() / self.dimension.max(1)
     }
 
-    /// Returns whether there is no sample.
-    pub fn is_empty(&self) -> bool {
-        self.samples.is_empty()
-    }
-
     /// Returns the hull at sample k, N intervals.
     pub fn sample(&self, k: usize) -> &[Interval] {
         &self.samples[k * self.dimension..(k + 1) * self.dimension]

@@ -156,13 +156,11 @@ impl PolynomialSystem {
         Self { states, inputs, components, rows, directions, carriers, angles, highest }
     }
 
-    /// Returns the number of states N.
-    pub fn states(&self) -> usize {
+    pub(crate) fn states(&self) -> usize {
         self.states
     }
 
-    /// Returns the number of inputs m.
-    pub fn inputs(&self) -> usize {
+    pub(crate) fn inputs(&self) -> usize {
         self.inputs
     }
 }

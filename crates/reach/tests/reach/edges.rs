@@ -38,7 +38,7 @@ fn run_all(system: &LinearSystem) {
             assert_eq!(gains.len(), grid.len(), "{disturbance:?} on {grid:?}");
             let reach = ReachSets::new(&propagation, &gains, &sets(n), &sets(m));
             assert_eq!(reach.len(), grid.len());
-            if !grid.is_empty() {
+            if grid.len() > 0 {
                 let ends = [(reach.upper_outer(0, 0), reach.upper_inner(0, 0), 0.75)];
                 let ends = ends.into_iter().chain([(
                     -reach.lower_outer(0, 0),

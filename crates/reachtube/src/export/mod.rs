@@ -2,9 +2,9 @@
 //!
 //! [`ExportCase::all`] takes a model over recorded inputs, and [`files`] writes one case for a
 //! [`Tool`]. The first lines of each file say what the tool computes from it and where this differs
-//! from the model. [`robot::mjcf`] and [`robot::urdf`] write a robot for simulators, and
-//! [`shield::Shield`] what the safety shield SaRA reads.
-//! `docs/export.md` has a table of models, tools and their meaning.
+//! from the model. [`robot::mjcf_files`] and [`robot::urdf_files`] write a robot for simulators,
+//! and [`shield::Shield`] what the safety shield SaRA reads. `docs/export.md` has a table of
+//! models, tools and their meaning.
 //!
 //! # Examples
 //!

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// The version of the format that this crate writes, and the only one that it reads.
-pub const SCHEMA_VERSION: u32 = 1;
+pub(crate) const SCHEMA_VERSION: u32 = 1;
 
 /// The description of a robot in SI units (m, rad, kg, s, N, N m), with the structure of the TOML
 /// format.

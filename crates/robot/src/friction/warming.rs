@@ -65,9 +65,7 @@ pub struct Warming {
 }
 
 impl Warming {
-    /// Returns the warmth at a temperature \[°C\], or at a run from 1.
-    #[must_use]
-    pub fn warmth(&self, value: f64) -> f64 {
+    fn warmth(&self, value: f64) -> f64 {
         match self.by {
             WarmingBy::Temperature => value - self.reference,
             WarmingBy::Runs => (value / self.reference).ln(),

@@ -1,6 +1,7 @@
 //! Identities of rigid-body dynamics on random robots and states.
 
 use crate::random::robots_and_states;
+use crate::simulation::simulate;
 use proptest::prelude::*;
 use reachtube_robot::{Physicality, Robot, Workspace, ltdl};
 use reachtube_scalar::Interval;
@@ -38,7 +39,8 @@ proptest! {
     #[test]
     fn rnea_is_the_sum_of_its_parts((robot, q, qd, qdd) in robots_and_states()) {
         let acceleration = nalgebra::DVector::from_column_slice(&qdd);
-        let moving = robot.mass_matrix(&q) * acceleration + robot.coriolis_torque(&q, &qd);
+        let coriolis = robot.motion_torque(&q, &qd, &vec![0.0; q.len()]);
+        let moving = robot.mass_matrix(&q) * acceleration + coriolis;
         close(robot.motion_torque(&q, &qd, &qdd).as_slice(), moving.as_slice())?;
         let sum = moving + robot.gravity_torque(&q);
         close(robot.inverse_dynamics(&q, &qd, &qdd).as_slice(), sum.as_slice())?;
@@ -74,7 +76,8 @@ proptest! {
         let h = 1e-3;
         let near = 8.0 * (energy(h) - energy(-h));
         let rate = (near - energy(2.0 * h) + energy(-2.0 * h)) / (12.0 * h);
-        let power: f64 = robot.coriolis_torque(&q, &qd).iter().zip(&qd).map(|(c, v)| c * v).sum();
+        let coriolis = robot.motion_torque(&q, &qd, &vec![0.0; q.len()]);
+        let power: f64 = coriolis.iter().zip(&qd).map(|(c, v)| c * v).sum();
         prop_assert!((power - rate).abs() < 1e-7 * (1.0 + energy(0.0)));
     }
 
@@ -147,10 +150,10 @@ proptest! {
         let energy =
             |q: &[f64], qd: &[f64]| robot.kinetic_energy(q, qd) + robot.potential_energy(q);
         let free = vec![vec![0.0; q.len()]; 50];
-        let motion = robot.simulate(&q, &qd, &free, 0.002, 8);
-        let (start, end) = (energy(&q, &qd), energy(&motion.q[50], &motion.qd[50]));
-        let kinetic =
-            robot.kinetic_energy(&motion.q[50], &motion.qd[50]) + robot.kinetic_energy(&q, &qd);
+        let motion = simulate(&robot, &[&q[..], &qd].concat(), &free, 0.002);
+        let (end_q, end_qd) = motion[50].split_at(q.len());
+        let (start, end) = (energy(&q, &qd), energy(end_q, end_qd));
+        let kinetic = robot.kinetic_energy(end_q, end_qd) + robot.kinetic_energy(&q, &qd);
         let scale = kinetic + start.abs();
         prop_assert!((end - start).abs() < 1e-6 * (1.0 + scale), "{start} J became {end} J");
     }
@@ -160,18 +163,16 @@ proptest! {
 fn friction_dissipates_energy() {
     let robot =
         Robot::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/double_pendulum.toml")).unwrap();
-    let motion = robot.simulate(&[2.0, -1.0], &[0.0, 0.0], &vec![vec![0.0; 2]; 10000], 0.002, 4);
+    let motion = simulate(&robot, &[2.0, -1.0, 0.0, 0.0], &vec![vec![0.0; 2]; 10000], 0.002);
     let energies: Vec<_> = motion
-        .q
         .iter()
-        .zip(&motion.qd)
-        .map(|(q, qd)| robot.kinetic_energy(q, qd) + robot.potential_energy(q))
+        .map(|x| robot.kinetic_energy(&x[..2], &x[2..]) + robot.potential_energy(&x[..2]))
         .collect();
     assert!(energies.windows(2).all(|w| w[1] <= w[0] + 1e-6));
     // Gravity overcomes Coulomb friction at the start, and friction has stopped the motion at the
     // end.
     assert!(energies[0] - energies[10000] > 1.0);
-    assert!(robot.kinetic_energy(&motion.q[10000], &motion.qd[10000]) < 1e-6);
+    assert!(robot.kinetic_energy(&motion[10000][..2], &motion[10000][2..]) < 1e-6);
 }
 
 #[test]
@@ -237,7 +238,7 @@ proptest! {
         let from_link = robot.input_from_link_torque(&q, &qd, tau_link.as_slice());
         close(from_link.as_slice(), u.as_slice())?;
         let moved = robot.mass_matrix(&q) * qdd
-            + robot.coriolis_torque(&q, &qd)
+            + robot.motion_torque(&q, &qd, &vec![0.0; q.len()])
             + robot.viscous_torque(&qd);
         close(moved.as_slice(), u.as_slice())?;
         let back = robot.motor_torque_from_input(&q, &qd, u.as_slice());

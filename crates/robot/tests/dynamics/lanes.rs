@@ -1,6 +1,7 @@
 //! The dynamics over lanes equals the dynamics over `f64` to the last bit.
 
 use crate::random::robots_and_states;
+use crate::simulation::simulate;
 use proptest::prelude::*;
 use reachtube_ode::{Ensemble, InitialValueProblem, VectorField};
 use reachtube_robot::{DrivenBy, Robot, RobotField, Workspace};
@@ -96,12 +97,11 @@ fn an_ensemble_equals_its_runs_alone() {
     let mut field = RobotField::<Lanes<8>>::new(&robot, DrivenBy::Motor);
     let mut ends = vec![Vec::new(); 21];
     let outcomes = Ensemble::new(12)
-        .integrate(&mut field, &times, 2, &runs, |run, _, x| ends[run] = x.to_vec());
+        .integrate(&mut field, &times, 8, &runs, |run, _, x| ends[run] = x.to_vec());
     assert!(outcomes.iter().all(|outcome| outcome.is_reached()));
     for (start, end) in starts.iter().zip(&ends) {
-        let motion = robot.simulate(&start[..6], &start[6..], &torques, 0.004, 2);
+        let alone = &simulate(&robot, start, &torques, 0.004)[20];
         // The ensemble's steps are differences of sample times; here they are 4 ms.
-        let alone = [&motion.q[20][..], &motion.qd[20]].concat();
         assert!(
             alone.iter().zip(end).all(|(a, b)| (a - b).abs() < 1e-9),
             "{alone:?} is not {end:?}"

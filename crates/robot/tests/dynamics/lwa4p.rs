@@ -16,7 +16,11 @@ fn lwa4p_agrees_with_the_regressor_of_table_iii() {
         let m: Vec<f64> =
             sample["mass_matrix"].as_array().unwrap().iter().flat_map(numbers).collect();
         assert_close(robot.mass_matrix(&q).as_slice(), &m, "M");
-        assert_close(robot.coriolis_torque(&q, &qd).as_slice(), &get("coriolis"), "c");
+        assert_close(
+            robot.motion_torque(&q, &qd, &vec![0.0; q.len()]).as_slice(),
+            &get("coriolis"),
+            "c",
+        );
         assert_close(robot.gravity_torque(&q).as_slice(), &get("gravity"), "g");
         assert_close(robot.inverse_dynamics(&q, &qd, &qdd).as_slice(), &get("tau_l"), "tau_l");
         let net = robot.gravity_torque(&q).add_scalar(3.0) - robot.viscous_torque(&qd);

@@ -128,7 +128,7 @@ fn scara([_, q2, _, _]: [f64; 4], [v1, v2, _, _]: [f64; 4]) -> [Vec<f64>; 3] {
 fn all_agree(robot: &Robot, q: &[f64], qd: &[f64], qdd: &[f64], [mass, c, g]: [Vec<f64>; 3]) {
     let n = q.len();
     assert_close(robot.mass_matrix(q).as_slice(), &mass, "M");
-    assert_close(robot.coriolis_torque(q, qd).as_slice(), &c, "c");
+    assert_close(robot.motion_torque(q, qd, &vec![0.0; q.len()]).as_slice(), &c, "c");
     assert_close(robot.gravity_torque(q).as_slice(), &g, "g");
     let inertial = |i: usize| (0..n).map(|j| mass[i * n + j] * qdd[j]).sum::<f64>();
     let tau: Vec<f64> = (0..n).map(|i| inertial(i) + c[i] + g[i]).collect();
@@ -138,7 +138,7 @@ fn all_agree(robot: &Robot, q: &[f64], qd: &[f64], qdd: &[f64], [mass, c, g]: [V
     robot.aba(&sin, &cos, qd, &tau, &mut Workspace::new(robot), &mut back);
     assert_close(&back, qdd, "aba");
     // The regressor does not contain the motors.
-    let y = robot.inertial_regressor_matrix(q, qd, qdd);
+    let y = crate::regressor::inertial_regressor(robot, q, qd, qdd);
     let theta = nalgebra::DVector::from_vec(robot.inertial_parameters());
     let motors = robot.joints().iter().zip(qdd).map(|(joint, qdd)| joint.armature * qdd);
     let sum: Vec<f64> = (y * theta).iter().zip(motors).map(|(a, b)| a + b).collect();

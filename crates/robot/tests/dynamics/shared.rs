@@ -2,7 +2,7 @@
 
 use reachtube_robot::{
     Convention, InertiaPoint, JointDescription, ParameterSet, PlacementDescription, Robot,
-    RobotDescription, SCHEMA_VERSION,
+    RobotDescription,
 };
 use serde_json::Value;
 
@@ -49,7 +49,7 @@ fn joint(link: &Value) -> JointDescription {
 /// Describes the robot of an oracle by placements.
 pub(crate) fn description(oracle: &Value) -> RobotDescription {
     RobotDescription {
-        schema_version: SCHEMA_VERSION,
+        schema_version: 1,
         name: oracle["name"].as_str().unwrap().into(),
         parameters: ParameterSet::Physical,
         convention: Convention::Standard,

@@ -70,8 +70,7 @@ impl Deceleration {
     }
 
     /// Returns the time until the robot would stand without any error, s.
-    #[must_use]
-    pub fn duration(&self) -> f64 {
+    pub(super) fn duration(&self) -> f64 {
         self.end_of(self.torques.len() / self.joints)
     }
 

@@ -13,7 +13,7 @@ use crate::export::text::{comment, harmless, number, numbers};
 
 /// Form of viscous friction that is not linear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Damping {
+pub(super) enum Damping {
     /// v1 and v3 exactly, as MuJoCo reads them since version 4.
     Polynomial,
     /// The best line, which every reader takes.
@@ -26,12 +26,7 @@ const NO_EVEN_TERM: &str = "Viscous friction is v1 qd + v3 qd^3, which MuJoCo re
 load and the Stribeck effect. Drake and Pinocchio read robot_linear.xml.";
 
 /// Returns the robot as MJCF text. Each joint has a motor, without which Drake drops its inertia.
-///
-/// # Errors
-///
-/// [`ExportError::SeparateGravity`] where gravity acts on masses of its own, and
-/// [`ExportError::NotPhysical`] where no bodies have its torques: MuJoCo refuses both.
-pub fn mjcf(robot: &Robot, damping: Damping) -> Result<String, ExportError> {
+pub(super) fn mjcf(robot: &Robot, damping: Damping) -> Result<String, ExportError> {
     let bodies = bodies(robot)?;
     let about = match damping {
         Damping::Polynomial if is_curved(robot) => vec![NO_EVEN_TERM.into()],

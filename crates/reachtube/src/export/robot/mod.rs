@@ -1,10 +1,10 @@
 //! An identified robot as simulators read it.
 //!
-//! [`mjcf`] is for MuJoCo and [`urdf`] for everything else. Both have the robot's inverse dynamics.
-//! Their friction is one viscous coefficient, the best line over the recorded velocities, and one
-//! Coulomb magnitude at no load; MuJoCo has cubic friction exactly. Links that cannot exist, as
-//! links from base parameters, are replaced by bodies with the same torques, or refused if none
-//! were found.
+//! [`mjcf_files`] is for MuJoCo and [`urdf_files`] for everything else. Both have the robot's
+//! inverse dynamics. Their friction is one viscous coefficient, the best line over the recorded
+//! velocities, and one Coulomb magnitude at no load; MuJoCo has cubic friction exactly. Links that
+//! cannot exist, as links from base parameters, are replaced by bodies with the same torques, or
+//! refused if none were found.
 
 mod attributes;
 mod bodies;
@@ -17,14 +17,14 @@ use std::path::Path;
 use reachtube_robot::{Lock, Robot};
 
 pub(super) use bodies::{Body, bodies};
-pub use mjcf::{Damping, mjcf};
-pub use urdf::{UrdfFiles, updated_urdf, urdf};
+use mjcf::{Damping, mjcf};
+use urdf::{UrdfFiles, updated_urdf, urdf};
 
 use super::text::numbers;
 use super::{ExportError, ExportFile};
 use crate::export::draws::Draws;
 
-/// Number of states at which [`check_torques`] has torques.
+/// Number of states in the table of torques.
 const CHECK_STATES: usize = 1000;
 
 /// Returns `robot.xml` for MuJoCo and `check_torques.csv`; where damping is a polynomial, also
@@ -32,7 +32,8 @@ const CHECK_STATES: usize = 1000;
 ///
 /// # Errors
 ///
-/// As [`mjcf`].
+/// [`ExportError::SeparateGravity`] where gravity acts on masses of its own, and
+/// [`ExportError::NotPhysical`] where no bodies have its torques: MuJoCo refuses both.
 pub fn mjcf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
     let mut files = vec![
         ExportFile::new("robot.xml", mjcf(robot, Damping::Polynomial)?),
@@ -48,7 +49,7 @@ pub fn mjcf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
 ///
 /// # Errors
 ///
-/// As [`urdf`].
+/// As [`mjcf_files`].
 pub fn urdf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
     Ok(of_urdf(robot, urdf(robot)?))
 }
@@ -58,7 +59,8 @@ pub fn urdf_files(robot: &Robot) -> Result<Vec<ExportFile>, ExportError> {
 ///
 /// # Errors
 ///
-/// As [`updated_urdf`].
+/// As [`urdf_files`]; [`ExportError::Robot`] for a URDF that cannot be read or has other joints,
+/// and [`ExportError::OtherGeometry`] if its links lie elsewhere.
 pub fn updated_urdf_files(
     robot: &Robot,
     path: &Path,
@@ -77,8 +79,7 @@ fn of_urdf(robot: &Robot, UrdfFiles { urdf, companion }: UrdfFiles) -> Vec<Expor
 
 /// Returns a table of random states with the torques of the robot without friction, to check a
 /// simulator with: `q1,..,qd1,..,qdd1,..,tau1,..`, n of each.
-#[must_use]
-pub fn check_torques(robot: &Robot) -> String {
+fn check_torques(robot: &Robot) -> String {
     let n = robot.joint_count();
     let names = ["q", "qd", "qdd", "tau"].iter();
     let names = names.flat_map(|name| (1..=n).map(move |j| format!("{name}{j}")));

@@ -24,7 +24,7 @@ const SAME_TORQUES: f64 = 1e-9;
 
 /// A robot as URDF, and the parts that URDF lacks.
 #[derive(Debug, Clone)]
-pub struct UrdfFiles {
+pub(super) struct UrdfFiles {
     /// The URDF.
     pub urdf: String,
     /// Its companion, TOML: motors, friction and gravity. reachtube reads it with the URDF; a
@@ -32,13 +32,7 @@ pub struct UrdfFiles {
     pub companion: String,
 }
 
-/// Returns the robot as URDF text, with its companion.
-///
-/// # Errors
-///
-/// [`ExportError::SeparateGravity`] where gravity acts on masses of its own, and
-/// [`ExportError::NotPhysical`] where no bodies have its torques.
-pub fn urdf(robot: &Robot) -> Result<UrdfFiles, ExportError> {
+pub(super) fn urdf(robot: &Robot) -> Result<UrdfFiles, ExportError> {
     let bodies = bodies(robot)?;
     let urdf = text(robot, &bodies);
     let mut description = robot.description().clone();
@@ -57,12 +51,11 @@ pub fn urdf(robot: &Robot) -> Result<UrdfFiles, ExportError> {
 }
 
 /// Writes the inertia and friction of a robot into a URDF file; all other text stays.
-///
-/// # Errors
-///
-/// As [`urdf`]; [`ExportError::Robot`] for a URDF that cannot be read or has other joints, and
-/// [`ExportError::OtherGeometry`] if its links lie elsewhere.
-pub fn updated_urdf(robot: &Robot, path: &Path, locks: &[Lock]) -> Result<UrdfFiles, ExportError> {
+pub(super) fn updated_urdf(
+    robot: &Robot,
+    path: &Path,
+    locks: &[Lock],
+) -> Result<UrdfFiles, ExportError> {
     own_links(robot)?;
     let options = UrdfOptions { locks: locks.to_vec(), any_inertia: true, ..Default::default() };
     let old = Urdf::load(path, &options)?;
