@@ -102,7 +102,8 @@ pub(super) fn wide_table(class: &str, caption: &str, head: &Markup, rows: &Marku
     }
 }
 
-/// Returns a table as [`wide_table`] lays it out, with columns of numbers aligned right.
+/// Returns a table with columns of numbers aligned right. The class decides whether cells are
+/// broken into lines: `sets` are not, `long` are.
 pub fn table(class: &str, table: &Table) -> Markup {
     let is_number = |cell: &String| {
         matches!(&**cell, "" | "none")

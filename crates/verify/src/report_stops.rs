@@ -35,7 +35,7 @@ pub(crate) fn triggers(all: &[Verification]) -> Option<(Table, String)> {
     let skipped: usize = count(|s| s.skipped);
     let mut text = format!("proved for the stops from {proved} of {samples} samples");
     if skipped > 0 {
-        text += &format!("; {skipped} are not covered: their stops end after the motion does");
+        text += &format!("; {skipped} are not covered: they end after the motion does");
     }
     Some((table, text))
 }

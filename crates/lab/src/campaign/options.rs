@@ -119,7 +119,7 @@ impl CampaignOptions {
 ///
 /// # Errors
 ///
-/// [`Error::NotACampaign`](crate::Error::NotACampaign) if the folder has no options of a campaign.
+/// [`Error::NotACampaign`] if the folder has no options of a campaign.
 pub(crate) fn campaign_options(folder: &Path) -> Result<CampaignOptions> {
     #[derive(Deserialize)]
     struct Mark {

@@ -51,10 +51,8 @@ pub struct RecordedCampaign {
 ///
 /// # Errors
 ///
-/// - [`Error`](crate::Error) for options out of range, and for a folder with files
-///   that this campaign has not written.
-/// - [`Error`](crate::Error) for parameters out of range,
-///   and where the simulation diverges.
+/// Fails for options and parameters out of range, for a folder with files that this campaign has
+/// not written, and where the simulation diverges.
 ///
 /// # Examples
 ///

@@ -115,7 +115,7 @@ type Campaign = (Stated, Vec<(f64, f64)>);
 ///
 /// # Errors
 ///
-/// Fails with [`Error::NoCampaigns`](crate::Error::NoCampaigns) if there are none, and as
+/// Fails with [`Error::NoCampaigns`] if there are none, and as
 /// [`conform`](reachtube_conform::conform).
 ///
 /// # Examples

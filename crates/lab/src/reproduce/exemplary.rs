@@ -31,7 +31,7 @@ impl Exemplary {
     ///
     /// # Errors
     ///
-    /// [`Error::NoSuite`](crate::Error::NoSuite); as [`Problem::read`] and [`reach`].
+    /// [`Error::NoSuite`]; as [`Problem::read`] and [`reach`].
     pub(super) fn new(folder: &Path, found: &Found, suite: Option<&str>) -> Result<Self> {
         let name = match suite {
             Some(name) => name.to_string(),

@@ -119,8 +119,7 @@ fn in_set(suite: &Exemplary, state: usize, title: &str, y: &str) -> Chart {
 ///
 /// # Errors
 ///
-/// [`Error`](crate::Error) for a folder that is not a campaign's;
-/// [`Error::UnknownSuite`](crate::Error::UnknownSuite); as [`suite_svg`].
+/// [`Error::NotACampaign`]; [`Error::UnknownSuite`]; as [`suite_svg`].
 pub(super) fn fig3(campaign: &Path, suite: &str) -> Result<PaperFigure> {
     let planned = planned_suites(campaign)?;
     let of_suite = planned.iter().find(|plan| plan.name == suite);

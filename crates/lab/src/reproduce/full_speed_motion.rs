@@ -30,7 +30,7 @@ struct Axis {
 ///
 /// # Errors
 ///
-/// Fails with [`Error::NoRange`](crate::Error::NoRange) if a joint has no such position.
+/// Fails with [`Error::NoRange`] if a joint has no such position.
 pub(super) fn full_speed_motion(
     robot: &Robot,
     range: f64,

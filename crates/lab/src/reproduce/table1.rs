@@ -87,8 +87,8 @@ pub struct Table1 {
 ///
 /// # Errors
 ///
-/// Fails with [`Error`](crate::Error) if there are no motions or no orders, or a joint cannot move
-/// within the range. Fails also for orders that [`PolynomialModel::new`] refuses.
+/// Fails if there are no motions or no orders, or a joint cannot move within the range, and for
+/// orders that [`PolynomialModel::new`] refuses.
 ///
 /// # Examples
 ///

@@ -93,8 +93,8 @@ impl Table3 {
 ///
 /// # Errors
 ///
-/// [`Error`](crate::Error) and [`Error`](crate::Error) if the folder is not a
-/// campaign of the LWA 4P; as [`identify`]; numbers that cannot be drawn.
+/// Fails if the folder is not a campaign of the LWA 4P, as [`identify`], and for numbers that
+/// cannot be drawn.
 pub(super) fn table3_and_fig5(
     folder: &Path,
     progress: &dyn Fn(usize, usize),

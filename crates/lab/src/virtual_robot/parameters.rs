@@ -128,7 +128,7 @@ impl VirtualRobotParameters {
     ///
     /// # Errors
     ///
-    /// [`Error`](crate::Error) names the first parameter that is not.
+    /// [`Error::Parameter`] names the first parameter that is not.
     pub(crate) fn validate(&self) -> Result<()> {
         let most = f64::MAX;
         let least = f64::MIN_POSITIVE;

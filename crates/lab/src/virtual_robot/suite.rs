@@ -78,7 +78,7 @@ pub(crate) struct SuiteRuns {
 ///
 /// # Errors
 ///
-/// [`Error::Diverged`](crate::Error::Diverged).
+/// [`Error::Diverged`].
 pub(crate) fn record_suite(
     robot: &VirtualRobot,
     motion: &Motion,

@@ -27,7 +27,7 @@ impl VirtualRobot {
     ///
     /// # Errors
     ///
-    /// [`Error`](crate::Error) for a parameter outside its range, and
+    /// [`Error::Parameter`](crate::Error::Parameter) for a parameter outside its range, and
     /// [`RobotError`](reachtube_robot::RobotError) where the true robot is not valid.
     pub(crate) fn new(nominal: &Robot, parameters: VirtualRobotParameters) -> Result<Self> {
         parameters.validate()?;
