@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use reachtube_abstraction::Abstraction;
 use reachtube_conform::data::{
-    Asked, Case, Compensation, Condition, Drive, DryFriction, LiveInput, Near, Parameters,
+    Asked, Case, Compensation, Condition, Drive, DryFriction, Fits, LiveInput, Near, Parameters,
     Residual, RunInput, Signals,
 };
 use reachtube_conform::plausibility::{Remark, Warning, WarningKind};
@@ -133,27 +133,8 @@ impl Drive for Arm {
         json(&(robot.description(), correction, settings))
     }
 
-    fn check_fit(&self, groups: &[Group]) -> Result<()> {
-        let is_friction = |group: &Group| {
-            matches!(group, Group::Viscous | Group::Cubic | Group::Coulomb | Group::WarmUp)
-        };
-        if self.settings.torque == Torque::Link && groups.iter().any(is_friction) {
-            let why = "there is no friction in link torques; fit inertia or payload";
-            return Err(Error::Fit(why.into()));
-        }
-        Ok(())
-    }
-
-    /// Returns the linear model of the same robot about the same point.
-    fn linear(&self, setup: &Setup) -> Result<Setup> {
-        let setup = setup.clone().with_method(Method::Program);
-        let settings = ArmSettings { abstraction: Abstraction::default(), ..self.settings.clone() };
-        let dynamics = system(&self.robot, &settings, Method::Program)?;
-        Ok(setup.with_drive(Arc::new(Self { settings, ..self.clone() }), dynamics))
-    }
-
-    fn parameters(&self, setup: &Setup, asked: &Asked) -> Box<dyn Parameters> {
-        Box::new(ArmParameters::new(self, setup, asked))
+    fn fits(&self) -> Option<&dyn Fits> {
+        Some(self)
     }
 
     fn remark(
@@ -180,6 +161,31 @@ impl Drive for Arm {
 
     fn any(&self) -> &dyn Any {
         self
+    }
+}
+
+impl Fits for Arm {
+    fn check(&self, groups: &[Group]) -> Result<()> {
+        let is_friction = |group: &Group| {
+            matches!(group, Group::Viscous | Group::Cubic | Group::Coulomb | Group::WarmUp)
+        };
+        if self.settings.torque == Torque::Link && groups.iter().any(is_friction) {
+            let why = "there is no friction in link torques; fit inertia or payload";
+            return Err(Error::Fit(why.into()));
+        }
+        Ok(())
+    }
+
+    /// Returns the linear model of the same robot about the same point.
+    fn linear(&self, setup: &Setup) -> Result<Setup> {
+        let setup = setup.clone().with_method(Method::Program);
+        let settings = ArmSettings { abstraction: Abstraction::default(), ..self.settings.clone() };
+        let dynamics = system(&self.robot, &settings, Method::Program)?;
+        Ok(setup.with_drive(Arc::new(Self { settings, ..self.clone() }), dynamics))
+    }
+
+    fn parameters(&self, setup: &Setup, asked: &Asked) -> Box<dyn Parameters> {
+        Box::new(ArmParameters::new(self, setup, asked))
     }
 }
 

@@ -13,6 +13,7 @@ pub(crate) mod notion;
 pub(crate) mod origin;
 pub(crate) mod problem;
 pub(crate) mod recordings;
+pub(crate) mod residual;
 pub(crate) mod runaway;
 pub(crate) mod sensor_noise;
 pub mod settings;
@@ -32,10 +33,9 @@ pub use condition::Condition;
 pub use envelope::Envelope;
 pub use input::RunInput;
 pub use live_input::LiveInput;
+pub use residual::{Residual, Torques};
 pub use sensor_noise::SensorNoise;
-pub use setup::{
-    Asked, Compensation, Drive, DryFriction, FreeParameter, Near, Parameters, Residual, Torques,
-};
+pub use setup::{Asked, Compensation, Drive, DryFriction, Fits, FreeParameter, Near, Parameters};
 pub use side::Side;
 pub use signals::{Part, Signal, Signals};
 pub use suite::Suite;

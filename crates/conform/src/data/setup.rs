@@ -4,8 +4,9 @@ use std::fmt::Debug;
 use std::path::Path;
 use std::sync::Arc;
 
+use reachtube_finding::Advice;
 use reachtube_reach::System;
-use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run, Sample};
+use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run};
 use reachtube_scalar::Interval;
 
 use crate::data::case::Case;
@@ -13,6 +14,7 @@ use crate::data::condition::Condition;
 use crate::data::input::RunInput;
 use crate::data::live_input::LiveInput;
 use crate::data::notion::Notion;
+use crate::data::residual::Residual;
 use crate::data::settings::{Method, Settings};
 use crate::data::signals::Signals;
 use crate::error::{Error, Result};
@@ -69,13 +71,19 @@ pub trait Drive: Debug + Send + Sync {
 
     /// Returns what finds how far dry friction of the inputs may differ between states; `None`
     /// where the inputs have none.
-    fn dry_friction(&self) -> Option<Box<dyn DryFriction + '_>>;
+    fn dry_friction(&self) -> Option<Box<dyn DryFriction + '_>> {
+        None
+    }
 
     /// Returns whether the input depends on the condition of the run.
-    fn input_differs_by_run(&self) -> bool;
+    fn input_differs_by_run(&self) -> bool {
+        false
+    }
 
     /// Returns whether runs that share their input may differ in what is compensated.
-    fn compensation_differs_by_run(&self) -> bool;
+    fn compensation_differs_by_run(&self) -> bool {
+        false
+    }
 
     /// Returns what is taken off the input along nominal motions of `system` in a condition; `None`
     /// if nothing is. `near` is what compensations near the same motion share.
@@ -85,14 +93,18 @@ pub trait Drive: Debug + Send + Sync {
     /// A system that does not fit.
     fn compensation(
         &self,
-        system: &System,
-        at: &Condition,
-        near: Option<&Near>,
-    ) -> Result<Option<Box<dyn Compensation>>>;
+        _system: &System,
+        _at: &Condition,
+        _near: Option<&Near>,
+    ) -> Result<Option<Box<dyn Compensation>>> {
+        Ok(None)
+    }
 
     /// Returns what compensations near a motion (samples x N) share, to first order; `None` if they
     /// share nothing.
-    fn near(&self, motion: &[f64]) -> Option<Near>;
+    fn near(&self, _motion: &[f64]) -> Option<Near> {
+        None
+    }
 
     /// Returns, for each input, the sum of the squares of what is wrong with its prediction along a
     /// case, and the number of samples.
@@ -100,16 +112,24 @@ pub trait Drive: Debug + Send + Sync {
     /// # Errors
     ///
     /// When the compensation does not fit.
-    fn input_error(&self, case: &Case) -> Result<(Vec<f64>, usize)>;
+    fn input_error(&self, case: &Case) -> Result<(Vec<f64>, usize)> {
+        Ok((vec![0.0; case.joints()], 0))
+    }
 
     /// Returns whether a fit has chosen its parameters.
-    fn is_fitted(&self) -> bool;
+    fn is_fitted(&self) -> bool {
+        false
+    }
 
     /// Returns the SHA-256 of the recordings that its parameters were identified from.
-    fn seen(&self) -> &[String];
+    fn seen(&self) -> &[String] {
+        &[]
+    }
 
     /// Returns whether it depends on temperatures.
-    fn needs_temperatures(&self) -> bool;
+    fn needs_temperatures(&self) -> bool {
+        false
+    }
 
     /// Returns a text that says all that the reading of recordings depends on.
     fn reading(&self) -> String;
@@ -117,42 +137,42 @@ pub trait Drive: Debug + Send + Sync {
     /// Returns a text that says all that inputs and compensations depend on.
     fn identity(&self) -> String;
 
-    /// Refuses a fit of groups of parameters that cannot be fitted.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Fit`](crate::Error::Fit).
-    fn check_fit(&self, groups: &[Group]) -> Result<()>;
-
-    /// Returns the setup with the linear model that steers a fit.
-    ///
-    /// # Errors
-    ///
-    /// A model that cannot be made.
-    fn linear(&self, setup: &Setup) -> Result<Setup>;
-
-    /// Returns the parameters of the drive and the system that a fit moves.
-    fn parameters(&self, setup: &Setup, asked: &Asked) -> Box<dyn Parameters>;
+    /// Returns what a fit may move; `None` where it can move nothing.
+    fn fits(&self) -> Option<&dyn Fits> {
+        None
+    }
 
     /// Returns what is remarkable of a kind about the parameters of a part (from 0), beside the
     /// lowest and the highest recorded value of states, which `recorded` returns.
     fn remark(
         &self,
-        kind: WarningKind,
-        part: usize,
-        recorded: &dyn Fn(usize) -> [f64; 2],
-    ) -> Option<Remark>;
+        _kind: WarningKind,
+        _part: usize,
+        _recorded: &dyn Fn(usize) -> [f64; 2],
+    ) -> Option<Remark> {
+        None
+    }
 
     /// Returns what most likely makes an answer about these recordings implausible, whose sets a
     /// method found; `held_out` is a cause that is known, if any.
-    fn cause(&self, runs: Vec<Run>, method: Method, held_out: Option<Warning>) -> Option<Warning>;
+    fn cause(
+        &self,
+        _runs: Vec<Run>,
+        _method: Method,
+        held_out: Option<Warning>,
+    ) -> Option<Warning> {
+        held_out
+    }
 
     /// Returns what computes the torque that motions at even steps \[s\] do not account for.
     ///
     /// # Errors
     ///
     /// Parameters that do not allow it.
-    fn residual(&self, step: f64) -> Result<Box<dyn Residual>>;
+    fn residual(&self, _step: f64) -> Result<Box<dyn Residual>> {
+        let words = "healthy motion is told by torques, and no robot drives the model";
+        Err(Error::Drive(Advice::from(words)))
+    }
 
     /// Returns the record of itself and of the system in a model file, which a
     /// [`Loader`](crate::model::Loader) reads.
@@ -179,29 +199,24 @@ pub trait DryFriction {
     fn spread(&mut self, states: &[Interval], visit: &mut dyn FnMut(usize, f64, bool));
 }
 
-/// Computes the torque that a motion does not account for, without allocation.
-pub trait Residual: Debug + Send + Sync {
-    /// Takes a sample with its input (m); returns whether there are enough of them.
-    fn take(&mut self, sample: &Sample, input: &[f64]) -> bool;
+/// What a fit may move of a drive and its system.
+pub trait Fits {
+    /// Refuses a fit of groups of parameters that cannot be fitted.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fit`](crate::Error::Fit).
+    fn check(&self, groups: &[Group]) -> Result<()>;
 
-    /// Forgets all samples.
-    fn clear(&mut self);
+    /// Returns the setup with the linear model that steers a fit.
+    ///
+    /// # Errors
+    ///
+    /// A model that cannot be made.
+    fn linear(&self, setup: &Setup) -> Result<Setup>;
 
-    /// Returns what was computed last.
-    fn torques(&self) -> &Torques;
-}
-
-/// What a [`Residual`] computes, for each joint.
-#[derive(Debug, Clone, Default)]
-pub struct Torques {
-    /// Velocities in the middle of the time, n.
-    pub speed: Vec<f64>,
-    /// The torque, n, N m.
-    pub torque: Vec<f64>,
-    /// The motor torque times the sine and the cosine of the motor's angle, n each, N m.
-    pub ripple: [Vec<f64>; 2],
-    /// The torque of the weight of 1 kg at the tip, n, N m.
-    pub weight: Vec<f64>,
+    /// Returns the parameters of the drive and the system that a fit moves.
+    fn parameters(&self, setup: &Setup, asked: &Asked) -> Box<dyn Parameters>;
 }
 
 /// What compensations near one motion share.
@@ -320,6 +335,16 @@ impl Setup {
     pub fn with_method(mut self, method: Method) -> Self {
         self.settings.method = method;
         self
+    }
+
+    /// Returns what a fit may move.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Fit`] where it can move nothing.
+    pub(crate) fn fits(&self) -> Result<&dyn Fits> {
+        let nothing = || Error::Fit("what drives the model has no parameters".into());
+        self.drive.fits().ok_or_else(nothing)
     }
 
     /// Returns what drives the system.

@@ -112,7 +112,7 @@ impl<'a> Basis<'a> {
         let mut other = without_held_out(given)?;
         let is_held_out = other.is_some();
         if given.dynamics().linear_system().is_none() {
-            let linear = given.setup().drive.linear(given.setup())?;
+            let linear = given.setup().fits()?.linear(given.setup())?;
             other = Some(other.as_ref().unwrap_or(given).with_setup(linear));
         }
         let steering = other.as_ref().unwrap_or(given);
@@ -140,7 +140,7 @@ impl<'a> Basis<'a> {
             is_nonlinear: self.given.dynamics().linear_system().is_none(),
             temperatures: self.data.mean_temperatures(),
         };
-        let parameters = setup.drive.parameters(setup, &asked);
+        let parameters = setup.fits()?.parameters(setup, &asked);
         if parameters.len() == 0 {
             return Err(Error::Fit("the robot has none of the parameters of these groups".into()));
         }
@@ -334,7 +334,7 @@ impl FitSettings {
             let why = format!("the weight of the pull is {pull}; give a number from 0 to 1");
             return Err(Error::Fit(why));
         }
-        setup.drive.check_fit(&self.groups)
+        setup.fits()?.check(&self.groups)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use reachtube_recordings::Sample;
 
-use crate::data::setup::Residual;
+use crate::data::residual::Residual;
 use crate::monitor::alarm::{Alarm, Fault};
 use crate::monitor::statistics::{Range, Shape, Statistics};
 

@@ -1,6 +1,6 @@
 //! Numbers that faults change: sudden torques, drags of joints and a payload.
 
-use crate::data::setup::Torques;
+use crate::data::residual::Torques;
 
 /// Time over which a sudden torque is compared with the torque before it, s.
 const BEFORE: f64 = 0.1;
