@@ -170,7 +170,7 @@ pub trait Drive: Debug + Send + Sync {
     ///
     /// Parameters that do not allow it.
     fn residual(&self, _step: f64) -> Result<Box<dyn Residual>> {
-        let words = "healthy motion is told by torques, and no robot drives the model";
+        let words = "healthy motion is judged by torques, and no robot drives the model";
         Err(Error::Drive(Advice::from(words)))
     }
 
