@@ -109,7 +109,7 @@ fn logs_are_described_as_they_were_understood() {
     }
     run.notes("the times are in ms; they were changed to s");
     let found = lab.run("inspect --data logs/motion.csv --json").exits(0).json();
-    crate::output_schema::fits("inspect", &found);
+    crate::output_schema::fits("inspect_logs", &found);
     assert_eq!(found["logs"][0]["angle_units"], serde_json::json!(["deg", "deg"]));
     lab.run("inspect --data logs --columns q=p{}").fails_after_result(&["columns.q = \"p{}\""]);
     lab.run("inspect --data logs --columns time_unit=s")

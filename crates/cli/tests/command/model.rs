@@ -162,7 +162,7 @@ fn logs_of_messages_give_the_model_of_their_csv_files() {
     mixed.notes("joints of /states are matched by name: q1 = hinge (place 1)");
     lab.run("check --model mix/model.json --data mixed/b.mcap").exits(0);
     let found = lab.run("inspect --robot pendulum.toml --data mixed --json").exits(0).json();
-    fits("inspect", &found);
+    fits("inspect_logs", &found);
     assert_eq!((&found["runs"], &found["logs"][0]["joints"][0]), (&3.into(), &"hinge".into()));
     let found = lab.run("inspect --robot pendulum.toml --data mixed/b.mcap").exits(0);
     assert!(found.stdout.contains("in messages\n  time    header.stamp"), "{}", found.stdout);

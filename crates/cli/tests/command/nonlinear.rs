@@ -114,7 +114,11 @@ fn a_changed_model_is_refused() {
         ("/drive/acceleration/0/0/1", json!(-2.5), "changed after it was written"),
         ("/drive/variables/0", json!("q1"), "its variables are not"),
         ("/settings/method", json!("guess"), "unknown variant `guess`"),
-        ("/settings/abstraction/order", json!(1), "but the model has 4 variables and order 1"),
+        (
+            "/drive/settings/abstraction/order",
+            json!(1),
+            "but the model has 4 variables and order 1",
+        ),
     ] {
         let mut changed = model.clone();
         *changed.pointer_mut(path).unwrap() = value;

@@ -5,9 +5,9 @@ use std::fmt::Write;
 
 use reachtube_ode::RungeKutta4;
 use reachtube_robot::{DrivenBy, Robot, RobotField};
-use serde_json::Value;
 
 use crate::fixture::Lab;
+use crate::output_schema::{complaints, validator};
 
 const SCARA: &str = r#"
 schema_version = 1
@@ -157,15 +157,10 @@ fn contains(text: &str, parts: &[&str]) {
     parts.iter().for_each(|part| assert!(text.contains(part), "{part:?} is not in\n{text}"));
 }
 
-fn fits_the_schema(model: &str, schema: &str) {
-    let path = format!("{}/../../docs/{schema}", env!("CARGO_MANIFEST_DIR"));
-    let schema: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
-    let complaints: Vec<String> = jsonschema::draft202012::new(&schema)
-        .unwrap()
-        .iter_errors(&serde_json::from_str(model).unwrap())
-        .map(|error| format!("{}: {error}", error.instance_path()))
-        .collect();
-    assert_eq!(complaints, Vec::<String>::new());
+#[track_caller]
+fn fits_the_schema(file: &str, of: &str) {
+    let found = complaints(&validator(of), &serde_json::from_str(file).unwrap());
+    assert_eq!(found, Vec::<String>::new());
 }
 
 #[test]
@@ -234,7 +229,7 @@ fn a_nonlinear_model_of_a_scara_conforms() {
         &["expanded about q = [0.1, -0.2, 0.1] (rad, rad, m), qd = 0 (rad/s, rad/s, m/s), \
              u = 0 (N m, N m, N)"],
     );
-    fits_the_schema(&lab.read("two.json"), "abstraction.schema.json");
+    fits_the_schema(&lab.read("two.json"), "abstraction");
     let run = lab
         .run("conform --abstraction two.json --data runs --torque motor --out scara.json -v")
         .exits(0);
@@ -291,7 +286,10 @@ fn a_gantry_and_a_scara_are_identified() {
         );
         let run = run.exits(0);
         if name == "gantry" {
-            contains(&run.stdout, &["tau rms [N]", "position error [m]", "error [m/s]"]);
+            contains(
+                &run.stdout,
+                &["torque, rms [N]", "position error at the end [m]", "velocity error [m/s]"],
+            );
         } else {
             contains(&run.stdout, &[" N m ", " N ", " m (", " rad ("]);
         }

@@ -98,11 +98,11 @@ fn verdict(worst: &Verification, [until, links]: [&str; 2], scene: &Scene) -> Fi
                 pair.time,
                 closest_found(worst),
             );
-            (Severity::Warning, Code::Undecided, text)
+            (Severity::Failure, Code::Undecided, text)
         }
         (_, None) => {
             let text = format!("undecided: the reachable set ends before the motion ({case}).");
-            (Severity::Warning, Code::Undecided, text)
+            (Severity::Failure, Code::Undecided, text)
         }
     };
     let simulated = worst.closest.as_ref().map_or(f64::INFINITY, |found| found.distance);
