@@ -156,11 +156,15 @@ impl PolynomialSystem {
         Self { states, inputs, components, rows, directions, carriers, angles, highest }
     }
 
-    pub(crate) fn states(&self) -> usize {
+    /// Returns the number of states.
+    #[must_use]
+    pub fn states(&self) -> usize {
         self.states
     }
 
-    pub(crate) fn inputs(&self) -> usize {
+    /// Returns the number of inputs.
+    #[must_use]
+    pub fn inputs(&self) -> usize {
         self.inputs
     }
 }

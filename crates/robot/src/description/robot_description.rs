@@ -35,7 +35,7 @@ pub(crate) const SCHEMA_VERSION: u32 = 1;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotDescription {
-    /// Version of the format: [`SCHEMA_VERSION`].
+    /// Version of the format: 1.
     pub schema_version: u32,
     /// The robot's name.
     pub name: String,

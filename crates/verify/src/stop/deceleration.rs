@@ -70,7 +70,8 @@ impl Deceleration {
     }
 
     /// Returns the time until the robot would stand without any error, s.
-    pub(super) fn duration(&self) -> f64 {
+    #[must_use]
+    pub fn duration(&self) -> f64 {
         self.end_of(self.torques.len() / self.joints)
     }
 

@@ -68,7 +68,8 @@ impl Path {
 
     /// Returns positions, velocities and accelerations, n each, at a time (s); before the start and
     /// after the end the cubic continues.
-    pub(super) fn at(&self, time: f64) -> [Vec<f64>; 3] {
+    #[must_use]
+    pub fn at(&self, time: f64) -> [Vec<f64>; 3] {
         let n = self.states.len() / self.times.len() / 2;
         let after = self.times[1..self.times.len() - 1].partition_point(|t| *t <= time);
         let h = self.times[after + 1] - self.times[after];
