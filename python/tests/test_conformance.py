@@ -302,5 +302,6 @@ def test_the_papers_recordings_cost_what_the_command_finds(robot: rt.Robot) -> N
 def test_the_schema_of_models_has_the_notions_and_the_choices() -> None:
     schema = json.loads(_reachtube.model_schema())["$defs"]
     assert [one["const"] for one in schema["Notion"]["oneOf"]] == list(get_args(_settings.Notion))
-    known = {*schema["Settings"]["properties"], "paper_model", "order", "expansion", "max_gap"}
+    known = {"paper_model", "order", "expansion", "max_gap"}
+    known |= {*schema["Settings"]["properties"], *schema["ArmSettings"]["properties"]}
     assert set(_settings.among(inspect.signature(rt.conform).parameters)) <= known
