@@ -201,8 +201,8 @@ class Model(Record):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """The settings."""
-        return dict(self._content["settings"])
+        """The settings of the sets and of the arm."""
+        return {**self._content["drive"]["settings"], **self._content["settings"]}
 
     @property
     def robot(self) -> Robot:

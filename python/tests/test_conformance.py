@@ -182,6 +182,7 @@ def test_settings_reach_the_product(robot: rt.Robot, data: rt.Recordings) -> Non
         )
     settings = found.settings
     assert settings["centre"] == "zero" and settings["disturbance"] == "constant"
+    assert settings["torque"] == "motor"
     assert settings["noise"] == {"fixed": [1e-4] * 6 + [1e-3] * 6}
     assert settings["until"] == 0.1 and not found.input_set.centre.any()
     assert found.noise_set is not None and found.noise_set.radius[7] == 1e-3
