@@ -279,20 +279,24 @@ impl Identification {
 
     fn motion_table(&self) -> Table {
         let names: Vec<&str> = self.names().collect();
-        let [position, motion] = ["position error at the end", "motion of the joint"]
-            .map(|name| self.unit(JointKind::position_unit).head(name));
-        let velocity = self.unit(JointKind::velocity_unit).head("velocity error");
+        let [q, qd] = [JointKind::position_unit, JointKind::velocity_unit].map(|of| self.unit(of));
+        let [position, motion] =
+            ["position error at the end", "motion of the joint"].map(|name| q.head(name));
+        let velocity = qd.head("velocity error");
         let row = |window: &WindowErrors, joint: usize| {
             let WindowErrors { duration, windows, diverged, .. } = window;
             let name = format!("{duration} s ({windows}, {diverged} diverged)");
             let has_end = diverged < windows;
-            let error = |error: f64| if has_end { significant(error, 3) } else { "-".into() };
+            let error = |unit: &Units, error: f64| match has_end {
+                true => unit.cell(joint, significant(error, 3)),
+                false => "-".into(),
+            };
             vec![
                 if joint == 0 { name } else { String::new() },
                 names[joint].to_string(),
-                error(window.q[joint]),
-                significant(window.motion[joint], 3),
-                error(window.qd[joint]),
+                error(&q, window.q[joint]),
+                q.cell(joint, significant(window.motion[joint], 3)),
+                error(&qd, window.qd[joint]),
             ]
         };
         let of_window = |window| (0..names.len()).map(move |joint| (window, joint));

@@ -291,7 +291,7 @@ fn a_gantry_and_a_scara_are_identified() {
                 &["torque, rms [N]", "position error at the end [m]", "velocity error [m/s]"],
             );
         } else {
-            contains(&run.stdout, &[" N m ", " N ", " m (", " rad ("]);
+            contains(&run.stdout, &[" N m ", " N ", " m ", " rad ", " rad/s\n", " m/s\n"]);
         }
         let found = Robot::load(&lab.path("found.toml").display().to_string()).unwrap();
         let q: Vec<f64> = centres.iter().map(|q| q + 0.05).collect();
