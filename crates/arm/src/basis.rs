@@ -5,8 +5,17 @@ use reachtube_conform::{Error, Result, Settings, Setup};
 use reachtube_robot::Robot;
 
 use crate::settings::ArmSettings;
-use crate::setup::{setup, setup_of};
-use crate::system::system_of;
+use crate::setup::setup_of;
+use crate::system::{system, system_of};
+
+/// Makes the setup of a conformance of a robot, or of an abstraction of one.
+///
+/// # Errors
+///
+/// As [`Basis::setup`].
+pub fn setup(basis: impl Into<Basis>, arm: ArmSettings, settings: Settings) -> Result<Setup> {
+    basis.into().setup(arm, settings)
+}
 
 /// What the nominal model is made of.
 #[derive(Debug, Clone)]
@@ -57,12 +66,14 @@ impl Basis {
     ///
     /// # Errors
     ///
-    /// As [`setup`]; an abstraction that does not fit the settings; a robot that is not physical.
+    /// Settings that do not fit the robot or the model; a robot that is not physical.
     pub fn setup(self, arm: ArmSettings, settings: Settings) -> Result<Setup> {
         match self {
             Self::Robot(robot) => {
                 robot.check_physical().map_err(Error::other)?;
-                setup(*robot, arm, settings)
+                settings.validate(robot.joint_count())?;
+                let dynamics = system(&robot, &arm, settings.method)?;
+                setup_of(*robot, dynamics, arm, settings)
             }
             Self::Abstraction(model) => {
                 let robot = Robot::from_description(model.robot()).map_err(Error::other)?;

@@ -1,7 +1,6 @@
+use reachtube_conform::data::Condition;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use reachtube_conform::data::Condition;
 
 /// Torque subtracted from the recorded input along the nominal motion, sample by sample, beyond
 /// what the model's own equations contain: friction and the weight of a payload.

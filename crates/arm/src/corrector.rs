@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
+use reachtube_conform::data::Condition;
+use reachtube_conform::{Error, Result};
 use reachtube_recordings::Torque;
 use reachtube_robot::{InertiaPoint, ParameterSet, Robot, RobotDescription, Workspace};
 
 use crate::arm::Arm;
 use crate::correction::{InputCorrection, JointCorrection};
 use crate::loads::LoadsNear;
-use reachtube_conform::data::Condition;
-use reachtube_conform::{Error, Result};
 
 /// Evaluates a correction for one robot.
 #[derive(Debug, Clone)]

@@ -1,10 +1,9 @@
 //! Dry friction of joints over boxes of states.
 
+use reachtube_conform::data::DryFriction;
 use reachtube_robot::friction::{Friction, Viscous};
 use reachtube_robot::{Robot, Workspace};
 use reachtube_scalar::Interval;
-
-use reachtube_conform::data::DryFriction;
 
 /// The dry friction of all joints.
 pub(super) struct JointFriction<'a> {

@@ -1,12 +1,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use reachtube_conform::data::RunInput;
 use reachtube_diagnose::axes;
 use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Defect, Run, Torque, check_limits};
 use reachtube_robot::Robot;
-
-use reachtube_conform::data::RunInput;
 
 /// Accelerations are differences of velocities over at least this time to both sides, s.
 pub(super) const SPAN: f64 = 0.02;

@@ -1,13 +1,12 @@
 //! How well an arm predicts the input along the recordings.
 
-use crate::arm::Arm;
-use crate::correction::InputCorrection;
-use crate::corrector::Corrector;
 use reachtube_conform::Result;
 use reachtube_conform::data::Case;
 
-/// Accelerations are differences of velocities over at least this time to both sides, s.
-const SPAN: f64 = 0.02;
+use crate::arm::Arm;
+use crate::correction::InputCorrection;
+use crate::corrector::Corrector;
+use crate::input::SPAN;
 
 /// Samples of a case at most: they lie so close that more show nothing new.
 const MOST_SAMPLES: usize = 200;

@@ -64,10 +64,10 @@ mod signals;
 mod system;
 
 pub use arm::Arm;
-pub use basis::Basis;
+pub use basis::{Basis, setup};
 pub use correction::{InputCorrection, JointCorrection};
 pub use less_friction::beyond_proof_of_stops;
 pub use model::{ArmModel, model_schema, open, parse};
 pub use record::DriveRecord;
 pub use settings::{ArmSettings, Equations};
-pub use setup::{OfArm, setup, setup_of};
+pub use setup::{OfArm, setup_of};

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use reachtube_conform::data::LiveInput;
 use reachtube_recordings::{Sample, Torque};
 use reachtube_robot::{Robot, Workspace};
 
 use crate::arm::Arm;
 use crate::delayed::Delayed;
-use reachtube_conform::data::LiveInput;
 
 /// Evaluates the input of an arm as [`reachtube_diagnose::input`] does.
 #[derive(Debug)]

@@ -9,6 +9,7 @@ use reachtube_conform::model::Loader;
 use reachtube_conform::{Model, Result, Setup};
 use reachtube_reach::System;
 use reachtube_robot::{Robot, RobotDescription};
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::arm::Arm;
@@ -83,9 +84,7 @@ impl ArmModel for Model {
     }
 
     fn robot(&self) -> RobotDescription {
-        let mut robot = self.arm().robot;
-        robot.add_identified_from(self.seen.iter().cloned());
-        robot
+        robot_of(self, self.arm().robot)
     }
 
     fn setup(&self) -> Result<Setup> {
@@ -94,8 +93,13 @@ impl ArmModel for Model {
 }
 
 fn record(model: &Model) -> Result<DriveRecord, String> {
-    serde_json::from_value(model.drive.clone())
+    DriveRecord::deserialize(&model.drive)
         .map_err(|error| format!("drive: {error}; give the file as `conform --out` wrote it"))
+}
+
+fn robot_of(model: &Model, mut robot: RobotDescription) -> RobotDescription {
+    robot.add_identified_from(model.seen.iter().cloned());
+    robot
 }
 
 struct ArmLoader;
@@ -111,7 +115,8 @@ impl Loader for ArmLoader {
         if record.correction.as_ref().is_some_and(|correction| !correction.is_valid_for(n)) {
             return Err(format!("its correction is not one of {n} joints; run conform again"));
         }
-        let robot = Robot::from_description(&model.robot()).map_err(|error| error.to_string())?;
+        let robot = Robot::from_description(&robot_of(model, record.robot.clone()))
+            .map_err(|error| error.to_string())?;
         let system = match record.polynomials() {
             Some(records) => {
                 let abstraction = record.settings.abstraction;

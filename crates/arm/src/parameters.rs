@@ -1,6 +1,11 @@
 use std::f64::consts::LN_10;
 use std::sync::Arc;
 
+use reachtube_conform::Group;
+use reachtube_conform::Setup;
+use reachtube_conform::data::{Asked, FreeParameter, Parameters};
+use reachtube_conform::fit::FittedParameter;
+use reachtube_conform::{Error, Result};
 use reachtube_robot::{GravityMoments, ParameterKind, Robot, RobotDescription};
 
 use crate::arm::Arm;
@@ -10,11 +15,6 @@ use crate::rising::{BEYOND_FITTED, RisingFriction};
 use crate::settings::Equations;
 use crate::setup::OfArm;
 use crate::system::system;
-use reachtube_conform::Group;
-use reachtube_conform::Setup;
-use reachtube_conform::data::{Asked, FreeParameter, Parameters};
-use reachtube_conform::fit::FittedParameter;
-use reachtube_conform::{Error, Result};
 
 /// The number of inertial parameters of a link.
 const INERTIAL: usize = ParameterKind::INERTIAL.len();

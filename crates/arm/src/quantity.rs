@@ -1,6 +1,5 @@
-use reachtube_robot::JointKind;
-
 use reachtube_conform::Group;
+use reachtube_robot::JointKind;
 
 /// What a number of a fit changes.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,7 +11,7 @@ use crate::system::polynomials;
 
 /// What drives the system of a model: the robot, and what the file needs to make its model again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "the record of an arm")]
 pub struct DriveRecord {
     /// The robot. What else it has seen since, [`ArmModel::robot`](crate::ArmModel::robot) adds.
     pub robot: RobotDescription,

@@ -1,11 +1,11 @@
 //! The torque that a motion does not account for, sample by sample, without allocation.
 
+use reachtube_conform::data::{Residual, Torques};
+use reachtube_conform::{Error, Result};
 use reachtube_recordings::{Sample, Torque};
 use reachtube_robot::{Robot, Workspace};
 
 use crate::corrector::only_payload;
-use reachtube_conform::data::{Residual, Torques};
-use reachtube_conform::{Error, Result};
 
 /// Half the time over which accelerations are taken, s: a push of 50 ms shows whole.
 const HALF: f64 = 0.025;

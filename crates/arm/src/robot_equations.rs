@@ -1,11 +1,10 @@
 //! The input under which a linear model accelerates as the robot itself does.
 
 use nalgebra::{DMatrix, DVector};
+use reachtube_conform::Result;
 use reachtube_ode::VectorField;
 use reachtube_reach::LinearSystem;
 use reachtube_robot::{DrivenBy, Robot, RobotField};
-
-use reachtube_conform::Result;
 
 use crate::setup::not_linear;
 

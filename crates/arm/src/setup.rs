@@ -7,18 +7,6 @@ use reachtube_robot::Robot;
 
 use crate::arm::Arm;
 use crate::settings::{ArmSettings, Equations};
-use crate::system::system;
-
-/// Makes the setup of a robot with the model that settings select.
-///
-/// # Errors
-///
-/// Settings that do not fit the robot, a robot that is not physical at the expansion point.
-pub fn setup(robot: Robot, arm: ArmSettings, settings: Settings) -> Result<Setup> {
-    settings.validate(robot.joint_count())?;
-    let dynamics = system(&robot, &arm, settings.method)?;
-    setup_of(robot, dynamics, arm, settings)
-}
 
 /// Makes the setup of a robot with a model of its motion.
 ///

@@ -1,12 +1,12 @@
 use std::sync::Arc;
 
 use reachtube_abstraction::{Abstraction, PolynomialModel};
+use reachtube_conform::settings::Method;
+use reachtube_conform::{Error, Result};
 use reachtube_reach::System;
 use reachtube_robot::Robot;
 
 use crate::settings::ArmSettings;
-use reachtube_conform::settings::Method;
-use reachtube_conform::{Error, Result};
 
 /// Makes the model of `robot` that `settings` select.
 ///

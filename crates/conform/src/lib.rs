@@ -6,10 +6,12 @@
 //! sets ([`Tube`]) of a model, and [`reach()`] returns these sets at samples and between them. A
 //! [`Job`] runs all of it, as the command does.
 //!
-//! The parts of an answer are in the modules: what a model file
-//! holds in [`model`], [`mod@fit`] and [`next_motion`], warnings in [`plausibility`],
-//! reachable sets and what lies outside in [`tube`] and [`claim`]. [`fleet`] is for recordings that
-//! stay on several machines.
+//! What turns recordings into inputs of the model is a [`Drive`](data::Drive). This crate has none:
+//! `reachtube-arm` has the one of robot arms, with examples.
+//!
+//! The parts of an answer are in the modules: what a model file holds in [`model`], [`mod@fit`] and
+//! [`next_motion`], warnings in [`plausibility`], reachable sets and what lies outside in [`tube`]
+//! and [`claim`]. [`fleet`] is for recordings that stay on several machines.
 
 mod answer;
 mod carry_over;

@@ -34,7 +34,7 @@ struct Tried {
 /// on a joint with little torque as on one with much. The result is `None` if no fault explains
 /// enough. Where the recordings do not determine all combinations of parameters (`is_determined`),
 /// a false reading may explain a short motion better than the right one, because the open
-/// parameters adapt to it. Only degrees and signs of torques are then looked for.
+/// parameters adapt to it. Only degrees are then looked for.
 #[must_use]
 pub fn likeliest_fault(
     misfit: &FreeMisfit,
@@ -51,9 +51,7 @@ pub fn likeliest_fault(
     };
     let better = |a: &Tried, b: &Tried| a.score.total_cmp(&b.score);
     let mut faults = faults(misfit.robot.joint_count());
-    faults.retain(|fault| {
-        is_determined || matches!(fault, Hypothesis::Degrees | Hypothesis::Sign(_, Columns::Torque))
-    });
+    faults.retain(|fault| is_determined || *fault == Hypothesis::Degrees);
     let mut best = faults.into_par_iter().filter_map(without).min_by(better)?;
     // The size of an offset or lag.
     let mut step = 0.5 * best.fault.size().unwrap_or(0.0);

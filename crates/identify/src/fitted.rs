@@ -10,7 +10,7 @@ use crate::inertia::fit::{InertiaFit, fit_inertia};
 use crate::inertia::saturation::saturating;
 use crate::inputs::Inputs;
 use crate::plausibility::compensated::input_unit_warning;
-use crate::plausibility::gain::{Gain, gains};
+use crate::plausibility::gain::{Gain, GainLikelihood, gains};
 use crate::plausibility::implausible::Implausible;
 use crate::plausibility::offset::{OffsetSearch, PositionOffset};
 use crate::plausibility::warnings::Checked;
@@ -181,12 +181,13 @@ fn check(
     let (logs, sampling) = (&inputs.excitation, &inputs.sampling);
     let known = KnownTorque::Friction(known);
     let samples = &Samples::in_motion(robot, &fit.columns, logs, sampling, &known);
-    let gains = gains(robot, samples, &fit.joints);
+    let likelihood = GainLikelihood::new(samples, &fit.joints);
+    let gains = gains(robot, samples, &likelihood);
     let search = OffsetSearch::new(robot, &fit.columns, logs, sampling, &known);
     let offsets = search.run();
     let compensated = inputs.compensated;
     let checked =
         Checked { robot, fit, friction, logs, samples, sampling, known: &known, compensated };
-    let warnings = checked.warnings(&gains, || search.reported(&offsets));
+    let warnings = checked.warnings(&likelihood, &gains, || search.reported(&offsets));
     Plausibility { gains, offsets: offsets.joints, warnings }
 }

@@ -1,7 +1,6 @@
 //! The result of an identification in words and tables, as the command and the page show it.
 
-use reachtube_finding::Units;
-use reachtube_finding::{Report, Section, Table};
+use reachtube_finding::{Report, Section, Table, Units};
 use reachtube_robot::{FrictionDescription, JointKind};
 use reachtube_scalar::number::significant;
 
@@ -69,10 +68,10 @@ impl Identification {
         let header = [
             "joint",
             &force.head("torque at rest, rms"),
-            "residual",
+            &force.head("residual"),
             "residual / torque",
             &force.head("moving: torque, rms"),
-            "residual",
+            &force.head("residual"),
             "residual / torque",
         ];
         let facts = vec![
@@ -148,9 +147,9 @@ impl Identification {
             "joint",
             "samples (independent)",
             &force.head("torque, rms"),
-            "residual, rms",
+            &force.head("residual, rms"),
             "residual / torque",
-            "residual, physical",
+            &force.head("residual, physical"),
             "beyond three deviations",
         ];
         let joints = Table::new(header, self.names().enumerate().map(row).collect())

@@ -13,9 +13,6 @@ const VIEW: [f64; 2] = [460.0, 460.0];
 const VIEWS: [(&str, [usize; 2]); 2] =
     [("from the side: x to the right, z up", [0, 2]), ("from above: x to the right, y up", [0, 1])];
 
-/// Meaning of the colours.
-const KEY: &str = "grey: all motions of the model; orange: the worst stop; blue: the nominal \
-                   motion; red: the closest one found; brown: obstacles";
 const SWEPT: Colour = [136, 136, 136];
 const BROWN: Colour = [160, 118, 74];
 
@@ -49,7 +46,14 @@ pub(super) fn picture(verification: &Verification, body: &Body, scene: &Scene) -
     let (case, answer) = (&verification.case, verification.answer);
     let title = format!("{case}: {answer}; the arm at {time:.3} s");
     svg.bold((10.0, 16.0), &title, &Anchor::Start, 13.0);
-    svg.text((10.0, 34.0), KEY, &Anchor::Start, 13.0);
+    let mut key = String::from("grey: all motions of the model; blue: the nominal motion");
+    if !stopping.is_empty() {
+        key += "; orange: the worst stop";
+    }
+    if shown.is_some_and(|frame| !frame.closest.is_empty()) {
+        key += "; red: the closest motion found";
+    }
+    svg.text((10.0, 34.0), &(key + "; brown: obstacles"), &Anchor::Start, 13.0);
     svg.document([2.0 * VIEW[0], VIEW[1] + 70.0], &title)
 }
 

@@ -97,7 +97,7 @@ fn shown(worst: &Verification, body: &Body, scene: &Scene) -> Markup {
             (Text(&worst.case))
             @if let Some((link, obstacle)) = pair {
                 ": the closest pair is the link of " strong { (Text(link)) }
-                " and " strong { (Text(obstacle)) } ", drawn in red."
+                " and " strong { (Text(obstacle)) } "."
             }
         }
         div #view hidden {

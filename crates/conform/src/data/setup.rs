@@ -142,8 +142,9 @@ pub trait Drive: Debug + Send + Sync {
         None
     }
 
-    /// Returns what is remarkable of a kind about the parameters of a part (from 0), beside the
-    /// lowest and the highest recorded value of states, which `recorded` returns.
+    /// Returns the remark of a kind about the parameters of a part (from 0), if the recordings give
+    /// reason for one. The last argument returns the lowest and the highest recorded value of a
+    /// state.
     fn remark(
         &self,
         _kind: WarningKind,
@@ -153,8 +154,8 @@ pub trait Drive: Debug + Send + Sync {
         None
     }
 
-    /// Returns what most likely makes an answer about these recordings implausible, whose sets a
-    /// method found; `held_out` is a cause that is known, if any.
+    /// Returns the most likely cause of an implausible answer about these recordings, whose sets
+    /// were found by a method. `held_out` is a cause that is known already, if any.
     fn cause(
         &self,
         _runs: Vec<Run>,
@@ -317,8 +318,8 @@ impl Setup {
         settings.validate(dynamics.inputs())?;
         if settings.stiction && drive.dry_friction().is_none() {
             return Err(Error::Stiction(
-                "torques that are measured at the links have no friction of the joints; leave the \
-                 setting out",
+                "the inputs have no dry friction, as torques that are measured at the links have \
+                 none; leave the setting out",
             ));
         }
         Ok(Self { drive, dynamics, settings, nominal_starts: BTreeMap::new(), condition: None })

@@ -4,6 +4,7 @@ use reachtube_recordings::State;
 use reachtube_scalar::number::interval;
 use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::json;
 
 use crate::model::file::Model;
 use crate::result::dependence_report::dependence;
@@ -47,7 +48,12 @@ impl Model {
     /// Returns the JSON schema of a model file, with or without findings beside the model.
     #[must_use]
     pub fn schema() -> serde_json::Value {
-        reachtube_files::schema::<Printed<'_>>()
+        let mut schema = reachtube_files::schema::<Printed<'_>>();
+        // Only a model that was not proved may have no cost: a reachable set was lost.
+        schema["if"] = json!({ "properties": { "verified": { "const": true } } });
+        schema["then"] =
+            json!({ "required": ["cost"], "properties": { "cost": { "type": "number" } } });
+        schema
     }
 
     /// Returns the answer for people. A table of the sets is like Table II of the paper.

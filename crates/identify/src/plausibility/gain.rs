@@ -10,6 +10,9 @@ use serde::Serialize;
 /// Deviation of a gain from 1 beyond which it is implausible.
 pub(super) const IMPLAUSIBLE_GAIN: f64 = 0.1;
 
+/// An inverted sign must reduce the misfit of the torques below this share.
+const INVERTED_MISFIT: f64 = 0.9;
+
 /// Rounds in which implausible gains are applied and the errors of the joints are estimated again.
 const GAIN_ROUNDS: usize = 4;
 
@@ -35,10 +38,8 @@ pub struct Gain {
 ///
 /// A joint's noise is only known once its gain is right. Implausible gains are therefore applied,
 /// and all gains are estimated again.
-pub(crate) fn gains(robot: &Robot, samples: &Samples, joints: &[JointFit]) -> Vec<Gain> {
-    let size = |j: &usize| joints[*j].torque;
-    let reference = (0..joints.len()).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
-    let mut found = GainLikelihood::new(samples, joints, reference).gains(robot);
+pub(crate) fn gains(robot: &Robot, samples: &Samples, first: &GainLikelihood) -> Vec<Gain> {
+    let mut found = first.gains(robot);
     let mut scaled = samples.clone();
     let mut latest = found.clone();
     for _ in 0..GAIN_ROUNDS {
@@ -49,7 +50,7 @@ pub(crate) fn gains(robot: &Robot, samples: &Samples, joints: &[JointFit]) -> Ve
         scaled.torque.iter_mut().enumerate().for_each(|(r, tau)| *tau *= latest[r % n].gain);
         scaled.recorded.iter_mut().enumerate().for_each(|(r, tau)| *tau *= latest[r % n].gain);
         let joints = &Fit::of_groups(&[&scaled], false).joints[0];
-        latest = GainLikelihood::new(&scaled, joints, reference).gains(robot);
+        latest = GainLikelihood::with_reference(&scaled, joints, first.reference).gains(robot);
         for (found, latest) in found.iter_mut().zip(&latest) {
             (found.gain, found.standard_error) =
                 (found.gain * latest.gain, latest.standard_error * found.gain);
@@ -62,7 +63,7 @@ pub(crate) fn gains(robot: &Robot, samples: &Samples, joints: &[JointFit]) -> Ve
 ///
 /// The misfit of torques scaled by g is gᵀ S g. It measures how much the torques contradict each
 /// other.
-struct GainLikelihood {
+pub(crate) struct GainLikelihood {
     /// S, n x n.
     misfit: DMatrix<f64>,
     /// Number of independent samples of each joint.
@@ -73,7 +74,13 @@ struct GainLikelihood {
 
 impl GainLikelihood {
     /// Computes the likelihood from samples and the quality of their fit, one entry per joint.
-    fn new(samples: &Samples, joints: &[JointFit], reference: usize) -> Self {
+    pub(crate) fn new(samples: &Samples, joints: &[JointFit]) -> Self {
+        let size = |j: &usize| joints[*j].torque;
+        let reference = (0..joints.len()).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0);
+        Self::with_reference(samples, joints, reference)
+    }
+
+    fn with_reference(samples: &Samples, joints: &[JointFit], reference: usize) -> Self {
         let (n, p) = (samples.joints, samples.columns.len());
         let used = samples.used_by_joint();
         // Outliers must not lower a gain: the root mean square includes them, unlike the robust
@@ -108,6 +115,21 @@ impl GainLikelihood {
             standard_error: errors[j],
         };
         (0..gains.len()).map(gain).collect()
+    }
+
+    /// Returns the joint whose torque most likely has the wrong sign, if any.
+    ///
+    /// The second value is the share of the misfit that remains with the other sign.
+    pub(super) fn inverted_torque(&self) -> Option<(usize, f64)> {
+        let n = self.counts.len();
+        let squares = |inverted: Option<usize>| {
+            let g = DVector::from_fn(n, |j, _| if inverted == Some(j) { -1.0 } else { 1.0 });
+            g.dot(&(&self.misfit * &g))
+        };
+        let here = squares(None);
+        let best =
+            (0..n).map(|j| (j, squares(Some(j)) / here)).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (best.1 < INVERTED_MISFIT).then_some(best)
     }
 }
 
@@ -169,12 +191,12 @@ mod tests {
     use super::*;
 
     /// The factor of two joints whose torques are both a sine of unknown amplitude. The second
-    /// torque is recorded at half scale.
-    fn two_joints() -> TriangularFactor {
+    /// torque is recorded at half scale and with the given sign.
+    fn two_joints(sign: f64) -> TriangularFactor {
         let noise = |k: usize| 0.01 * (((k * 7919) % 1009) as f64 / 1009.0 - 0.5) * 12f64.sqrt();
         let row = |k: usize| {
             let x = (0.1 * k as f64).sin();
-            let second = 0.5 * (2.0 * x + noise(3 * k + 500));
+            let second = sign * 0.5 * (2.0 * x + noise(3 * k + 500));
             [
                 [x, 2.0 * x + noise(k), 0.0, 0.0].map(|v| v / 0.01),
                 [x, 0.0, second, 0.0].map(|v| v / 0.01),
@@ -187,7 +209,18 @@ mod tests {
     #[test]
     fn the_most_likely_gain_restores_a_scaled_torque() {
         let (gains, errors) =
-            most_likely(&eliminated(&two_joints(), 1), &[400.0, 400.0], 0).unwrap();
+            most_likely(&eliminated(&two_joints(1.0), 1), &[400.0, 400.0], 0).unwrap();
         assert!((gains[1] / gains[0] - 2.0).abs() < 0.1 && errors[1] < 0.1, "{gains:?} {errors:?}");
+    }
+
+    #[test]
+    fn an_inverted_torque_contradicts_the_other() {
+        let likelihood = |sign| GainLikelihood {
+            misfit: eliminated(&two_joints(sign), 1),
+            counts: vec![400.0; 2],
+            reference: 0,
+        };
+        assert!(likelihood(-1.0).inverted_torque().is_some());
+        assert!(likelihood(1.0).inverted_torque().is_none());
     }
 }

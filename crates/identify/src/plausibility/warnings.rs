@@ -1,13 +1,13 @@
 use crate::fit::Fit;
 use crate::inertia::fit::InertiaFit;
 use crate::plausibility::compensated::input_unit_warning;
-use crate::plausibility::gain::{Gain, IMPLAUSIBLE_GAIN, gains};
+use crate::plausibility::gain::{Gain, GainLikelihood, IMPLAUSIBLE_GAIN, gains};
 use crate::plausibility::implausible::Implausible;
 use crate::plausibility::offset::independent_columns;
 use crate::plausibility::scale::torque_unit_warning;
 use crate::prepare::log::{PreparedLog, spread};
 use crate::samples::{KnownTorque, Samples, Sampling};
-use reachtube_diagnose::{FreeMisfit, Hypothesis, Signals, likeliest_fault};
+use reachtube_diagnose::{Columns, FreeMisfit, Hypothesis, Signals, likeliest_fault};
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
@@ -49,11 +49,16 @@ impl Checked<'_> {
     /// about it: it is one if the gains agree without it.
     pub(crate) fn warnings(
         &self,
+        likelihood: &GainLikelihood,
         gains: &[Gain],
         offset: impl FnOnce() -> Option<(Vec<PreparedLog>, String)>,
     ) -> Vec<Implausible> {
         let gains: Vec<String> = gains.iter().filter_map(wrong_gain).collect();
-        let found = self.likeliest_fault();
+        let inverted = || {
+            let (joint, share) = likelihood.inverted_torque()?;
+            Some((Hypothesis::Sign(joint, Columns::Torque), (joint, share)))
+        };
+        let found = self.likeliest_fault().or_else(inverted);
         // Degrees make all masses meaningless.
         let are_degrees = found.is_some_and(|(fault, _)| fault == Hypothesis::Degrees);
         let torque_unit = if are_degrees {
@@ -100,7 +105,8 @@ impl Checked<'_> {
         let columns = &self.fit.columns;
         let samples = Samples::in_motion(self.robot, columns, logs, self.sampling, self.known);
         let joints = &Fit::of_groups(&[&samples], false).joints[0];
-        gains(self.robot, &samples, joints).iter().all(|gain| wrong_gain(gain).is_none())
+        let likelihood = GainLikelihood::new(&samples, joints);
+        gains(self.robot, &samples, &likelihood).iter().all(|gain| wrong_gain(gain).is_none())
     }
 
     fn name(&self, joint: usize) -> &str {
