@@ -94,7 +94,7 @@ def test_stiction_widens_the_input_set(robot: rt.Robot, data: rt.Recordings) -> 
     grown = np.subtract(*reversed(list(radii)))
     assert np.allclose(grown, wide["allowance"][12:]) and (grown > 0).any()
     assert "stiction" in [finding.code for finding in wider.findings]
-    with pytest.raises(rt.ReachtubeError, match="have no friction"):
+    with pytest.raises(rt.ReachtubeError, match="have no dry friction"):
         rt.conform(robot, data, torque="link", stiction=True)
 
 
