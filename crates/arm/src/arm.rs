@@ -55,6 +55,6 @@ impl Arm {
     pub(super) fn is_recorded_input(&self) -> bool {
         self.correction.is_none()
             && self.robot.warms_by().is_empty()
-            && self.settings.equations == Equations::Model
+            && self.settings.equations != Equations::Robot
     }
 }

@@ -57,8 +57,8 @@ impl Drive for Arm {
         }
     }
 
-    fn live_input(&self, step: f64) -> Box<dyn LiveInput> {
-        Box::new(ArmInput::new(self, step))
+    fn live_input(&self, step: f64) -> Result<Box<dyn LiveInput>> {
+        Ok(Box::new(ArmInput::new(self, step)))
     }
 
     fn signals(&self) -> &Signals {
@@ -92,11 +92,11 @@ impl Drive for Arm {
         let correction = self.correction.as_ref().unwrap_or(&none);
         let corrector = Corrector::new(self, correction, at)?;
         let equations = match self.settings.equations {
-            Equations::Model => None,
             Equations::Robot => {
                 let model = system.linear_system().ok_or_else(not_linear)?;
                 Some(RobotEquations::new(&self.robot, model)?)
             }
+            _ => None,
         };
         Ok(Some(Box::new(Corrected { corrector, equations, near: near.cloned() })))
     }

@@ -21,14 +21,7 @@ pub(super) fn input(
     robot: &Robot,
     torque: Torque,
 ) -> Result<RunInput, Vec<Defect>> {
-    let defects = check_limits(path, run, &axes(robot));
-    if !defects.is_empty() {
-        return Err(defects);
-    }
-    let grid = TimeGrid::from_times(&run.times).map_err(|error| {
-        let remedy = "sort the samples, drop duplicates";
-        vec![Defect::new(path, None, error.to_string(), remedy)]
-    })?;
+    let grid = grid(path, run, robot)?;
     let mut inputs = match torque {
         Torque::Compensated => run.torques.clone(),
         Torque::Motor | Torque::Link => {
@@ -41,6 +34,18 @@ pub(super) fn input(
         add_motor_inertia(run, robot, &mut inputs);
     }
     Ok(RunInput { grid: Arc::new(grid), inputs: inputs.into() })
+}
+
+/// Returns the times of a run whose units and times were checked.
+pub(super) fn grid(path: &Path, run: &Run, robot: &Robot) -> Result<TimeGrid, Vec<Defect>> {
+    let defects = check_limits(path, run, &axes(robot));
+    if !defects.is_empty() {
+        return Err(defects);
+    }
+    TimeGrid::from_times(&run.times).map_err(|error| {
+        let remedy = "sort the samples, drop duplicates";
+        vec![Defect::new(path, None, error.to_string(), remedy)]
+    })
 }
 
 /// Adds to inputs from torques behind the gear what the motors' inertia takes, J q̈, which their

@@ -48,6 +48,7 @@ mod dry_friction;
 mod friction;
 mod input;
 mod input_error;
+mod kinematic;
 mod less_friction;
 mod live_input;
 mod loads;

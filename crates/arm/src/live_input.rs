@@ -12,7 +12,8 @@ use crate::delayed::Delayed;
 /// Evaluates the input of an arm as [`reachtube_diagnose::input`] does.
 #[derive(Debug)]
 pub(super) struct ArmInput {
-    evaluation: Evaluation,
+    /// What evaluates the input; `None` where it is 0.
+    evaluation: Option<Evaluation>,
     delayed: Option<Delayed>,
     /// The sample that was taken last, and whether its input was asked for.
     newest: Sample,
@@ -40,9 +41,15 @@ impl ArmInput {
         let delayed = Delayed::new(&robot, torque, step);
         let workspace = Workspace::new(&robot);
         let (sin, cos, gravity) = (zeros(), zeros(), zeros());
-        let evaluation = Evaluation { robot, torque, workspace, sin, cos, gravity };
+        let evaluation = Some(Evaluation { robot, torque, workspace, sin, cos, gravity });
         let newest = Sample::zeros(n);
         Self { evaluation, delayed, newest, is_known: true, input: zeros() }
+    }
+
+    /// Makes the input of `n` joints that is 0 at each sample.
+    pub(super) fn zero(n: usize) -> Self {
+        let (newest, input) = (Sample::zeros(n), vec![0.0; n]);
+        Self { evaluation: None, delayed: None, newest, is_known: true, input }
     }
 }
 
@@ -64,7 +71,7 @@ impl LiveInput for ArmInput {
             None => (!std::mem::replace(is_known, true)).then_some(&*newest),
         };
         let Some(sample) = sample else { return false };
-        evaluation.evaluate(sample, input);
+        evaluation.iter_mut().for_each(|evaluation| evaluation.evaluate(sample, input));
         judge(sample, input);
         true
     }

@@ -14,6 +14,7 @@ use serde_json::Value;
 
 use crate::arm::Arm;
 use crate::record::DriveRecord;
+use crate::setup::driven;
 use crate::system::{system, system_of};
 
 const REMEDY: &str = "give a file that `model` or `conform` wrote, such as arm/model.json";
@@ -128,6 +129,6 @@ impl Loader for ArmLoader {
                 .map_err(|error| error.to_string()),
         }?;
         let arm = Arm::new(robot, record.correction, record.settings);
-        Ok((Arc::new(arm), system))
+        Ok((driven(arm), system))
     }
 }

@@ -3,7 +3,10 @@ use reachtube_recordings::Torque;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Whose equations of motion the nominal motions satisfy.
+/// Time in which an acceleration dies out to 1/e, s.
+const DECAY: f64 = 0.2;
+
+/// Which equations the nominal motions satisfy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Equations {
@@ -13,6 +16,14 @@ pub enum Equations {
     /// The robot's own (docs/method.md, section 3). The model, which is linear, describes the
     /// deviations from that motion only.
     Robot,
+    /// None: the velocity stays what it was at the start. Positions alone drive such a model, and
+    /// U is a set of accelerations.
+    Velocity,
+    /// None: the acceleration at the start, which is known from the motion before, dies out with a
+    /// time constant of 0.2 s.
+    Decaying,
+    /// None: the acceleration at the start stays.
+    Held,
 }
 
 /// What decides how an arm drives the model of its motion along recordings.
@@ -31,6 +42,24 @@ pub struct ArmSettings {
 }
 
 impl Equations {
+    /// The equations without a robot and its torque.
+    pub const KINEMATIC: [Self; 3] = [Self::Velocity, Self::Decaying, Self::Held];
+
+    /// Returns whether they know neither the robot nor its torque.
+    #[must_use]
+    pub fn is_kinematic(self) -> bool {
+        Self::KINEMATIC.contains(&self)
+    }
+
+    /// Returns what is left of the acceleration at the start at a time \[s\] after it, as a part.
+    pub(crate) fn part_left(self, time: f64) -> f64 {
+        match self {
+            Self::Decaying => (-time / DECAY).exp(),
+            Self::Held => 1.0,
+            Self::Model | Self::Robot | Self::Velocity => 0.0,
+        }
+    }
+
     fn is_model(&self) -> bool {
         *self == Self::Model
     }

@@ -1,11 +1,13 @@
 use std::sync::Arc;
 
+use reachtube_conform::data::Drive;
 use reachtube_conform::{Error, Problem, Result, Settings, Setup};
 use reachtube_finding::Advice;
 use reachtube_reach::System;
 use reachtube_robot::Robot;
 
 use crate::arm::Arm;
+use crate::kinematic::Kinematic;
 use crate::settings::{ArmSettings, Equations};
 
 /// Makes the setup of a robot with a model of its motion.
@@ -23,7 +25,15 @@ pub fn setup_of(
     if arm.equations == Equations::Robot && dynamics.linear_system().is_none() {
         return Err(not_linear());
     }
-    Setup::new(Arc::new(Arm::new(robot, None, arm)), dynamics, settings)
+    Setup::new(driven(Arm::new(robot, None, arm)), dynamics, settings)
+}
+
+/// Returns what drives the model of an arm: its torque, or nothing but where it starts.
+pub(crate) fn driven(arm: Arm) -> Arc<dyn Drive> {
+    match arm.settings.equations.is_kinematic() {
+        true => Arc::new(Kinematic(arm)),
+        false => Arc::new(arm),
+    }
 }
 
 /// Nominal motions by the robot's own equations were asked of a model that is not linear.

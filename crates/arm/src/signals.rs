@@ -14,13 +14,27 @@ pub(crate) fn signals(robot: &Robot, equations: Equations) -> Signals {
     };
     let units = |unit: fn(JointKind) -> &'static str| std::iter::repeat_n(unit, n);
     let units = units(JointKind::position_unit).chain(units(JointKind::velocity_unit));
-    let input = |j: usize| signal(format!("tau{}", j + 1), joints[j].kind.force_unit());
+    let input = |j: usize| match equations.is_kinematic() {
+        true => signal(format!("qdd{}", j + 1), joints[j].kind.acceleration_unit()),
+        false => signal(format!("tau{}", j + 1), joints[j].kind.force_unit()),
+    };
     let part =
         |j: usize| Part { name: joints[j].name.clone(), states: vec![j, n + j], inputs: vec![j] };
     Signals {
         states: units.enumerate().map(state).collect(),
         inputs: (0..n).map(input).collect(),
         parts: (0..n).map(part).collect(),
-        nominal: (equations == Equations::Robot).then(|| "the robot's own equations".into()),
+        nominal: nominal(equations).map(Into::into),
     }
+}
+
+/// Returns which equations nominal motions satisfy that are not the model's.
+fn nominal(equations: Equations) -> Option<&'static str> {
+    Some(match equations {
+        Equations::Model => return None,
+        Equations::Robot => "the robot's own equations",
+        Equations::Velocity => "a velocity that stays",
+        Equations::Decaying => "an acceleration that dies out",
+        Equations::Held => "an acceleration that stays",
+    })
 }

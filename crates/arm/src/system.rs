@@ -6,6 +6,7 @@ use reachtube_conform::{Error, Result};
 use reachtube_reach::System;
 use reachtube_robot::Robot;
 
+use crate::kinematic;
 use crate::settings::ArmSettings;
 
 /// Makes the model of `robot` that `settings` select.
@@ -14,6 +15,9 @@ use crate::settings::ArmSettings;
 ///
 /// When the robot is not physical at the expansion point, or the order does not fit.
 pub(super) fn system(robot: &Robot, settings: &ArmSettings, method: Method) -> Result<System> {
+    if settings.equations.is_kinematic() {
+        return Ok(System::Linear(kinematic::system(robot.joint_count())?));
+    }
     let Abstraction { model, order } = settings.abstraction;
     let polynomials = PolynomialModel::new(robot, model, order, &settings.expansion_point);
     Ok(system_of(polynomials.map_err(Error::other)?, method))

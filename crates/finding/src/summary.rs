@@ -8,7 +8,7 @@ use crate::table::Table;
 const LINES: usize = 15;
 
 /// Largest number of columns.
-const COLUMNS: usize = 100;
+pub(crate) const COLUMNS: usize = 100;
 
 /// Smallest number of rows that a table keeps.
 const FEWEST_ROWS: usize = 2;

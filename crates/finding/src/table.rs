@@ -1,6 +1,7 @@
 use std::fmt;
 
 use crate::printable::printable;
+use crate::summary::COLUMNS;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -49,7 +50,8 @@ impl Table {
 }
 
 impl fmt::Display for Table {
-    /// Lays the table out: the first column is aligned left, the others right.
+    /// Lays the table out: the first column is aligned left, the others right. Columns of a wide
+    /// table stand closer.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // A cell stays on one line, so that no name can pretend to be a row of its own.
         let one_line = |text: &String| printable(&text.replace('\n', "\\n"));
@@ -64,12 +66,14 @@ impl fmt::Display for Table {
             cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
         };
         let widths: Vec<usize> = (0..self.header.len()).map(width).collect();
+        let is_wide = 2 + widths.iter().map(|width| width + 3).sum::<usize>() > COLUMNS + 3;
+        let gap = if is_wide { "  " } else { "   " };
         for line in &lines {
             let cells = line.iter().zip(&widths).enumerate();
             let aligned = cells.map(|(column, (cell, &width))| {
                 if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
             });
-            writeln!(f, "  {}", aligned.collect::<Vec<_>>().join("   ").trim_end())?;
+            writeln!(f, "  {}", aligned.collect::<Vec<_>>().join(gap).trim_end())?;
         }
         if self.more > 0 {
             writeln!(f, "  and {} more, which JSON lists", self.more)?;

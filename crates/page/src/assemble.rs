@@ -38,6 +38,7 @@ pub fn page(sources: &Sources) -> Result<Page> {
             match arm.settings.equations {
                 Equations::Model => "",
                 Equations::Robot => " about nominal motions by the robot's own equations",
+                _ => " of accelerations, without the robot",
             },
             counted(check.verdict.runs, "recording"),
             counted(check.verdict.suites.len(), "test suite")

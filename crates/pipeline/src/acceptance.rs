@@ -5,18 +5,26 @@ use reachtube_recordings::Torque;
 
 use crate::build::Built;
 use crate::choices::{LARGEST_GROWTH, LARGEST_RATIO};
+use crate::without_model::WithoutModel;
 
 impl Built {
     /// Returns whether the sets were proved to enclose every window, limit every joint, are narrow
-    /// enough at the horizon, and carry over to what was held out, and nothing contradicts the
-    /// recordings.
+    /// enough at the horizon and narrower than without a model, and carry over to what was held
+    /// out, and nothing contradicts the recordings.
     #[must_use]
     pub fn is_useful(&self) -> bool {
         self.choices.accept(&self.answer.model)
+            && self.worse_than_without().is_none()
             && self.growth_not_accepted().is_none()
             && self.left_out_not_accepted().is_none()
             && self.held_out.part_outside() <= self.choices.largest_outside()
             && self.contradiction().is_none()
+    }
+
+    /// Returns the sets without a model, if they are better: the widest is narrower, or more of the
+    /// rows of faster motions lie inside.
+    pub(crate) fn worse_than_without(&self) -> Option<&WithoutModel> {
+        self.without_model.as_ref().filter(|without| !without.is_model_better())
     }
 
     /// Returns half a joint's set by the joint's displacement that is accepted at most.
@@ -58,6 +66,9 @@ impl Built {
     pub(crate) fn why_useless(&self) -> String {
         if !self.choices.accept(&self.answer.model) {
             return "too wide to be of use".into();
+        }
+        if let Some(without) = self.worse_than_without() {
+            return without.why_better();
         }
         match self.growth_not_accepted() {
             None if self.left_out_not_accepted().is_some() => {

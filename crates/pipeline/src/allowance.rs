@@ -17,6 +17,7 @@ use crate::prediction::upper_bound;
 use crate::rounding::rounded_up;
 use crate::trial::Trial;
 use crate::windows::Prepared;
+use crate::without_model::Foretold;
 
 /// Sets with an allowance.
 pub(crate) struct Widened {
@@ -28,6 +29,8 @@ pub(crate) struct Widened {
     pub reason: String,
     /// A motion that was left out and that no allowance encloses.
     pub finding: Option<Finding>,
+    /// The sets before, as wide as motions need them that were left out.
+    pub foretold: Foretold,
 }
 
 /// An allowance, why, and what speaks against it.
@@ -46,10 +49,9 @@ impl Widened {
             true => unseen(&answer),
             false => trial.carried_over(&answer, recordings, horizon)?,
         };
-        let Self { answer, allowance, reason, finding } =
-            Self::with(trial, recordings, answer, &left_out)?;
+        let found = Self::with(trial, recordings, answer, &left_out)?;
         let left_out = left_out.into_iter().map(|unseen| unseen.left_out).collect();
-        Ok(Self { answer: answer.with_left_out(left_out), allowance, reason, finding })
+        Ok(Self { answer: found.answer.with_left_out(left_out), ..found })
     }
 
     /// Does what [`new`](Self::new) does for `most` windows at most, where motions are left out of
@@ -83,9 +85,10 @@ impl Widened {
             }
             None => asked(&answer, left_out, [trial.largest_outside, trial.largest_growth]),
         };
+        let foretold = Foretold::new(&answer, left_out);
         let answer =
             if allowance.is_empty() { answer } else { answer.widened(allowance.clone())? };
-        Ok(Self { answer, allowance, reason, finding })
+        Ok(Self { answer, allowance, reason, finding, foretold })
     }
 
     pub(crate) fn words(&self) -> String {

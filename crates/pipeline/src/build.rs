@@ -25,6 +25,7 @@ use crate::sorted::{Sorted, WARMTH, unknown_warmth};
 use crate::steps::{Steps, digest};
 use crate::trial::Trial;
 use crate::windows::Prepared;
+use crate::without_model::WithoutModel;
 
 /// A model made of logs, the choices behind it, and what motions that were held out say of it.
 #[derive(Debug)]
@@ -46,6 +47,9 @@ pub struct Built {
     pub horizons: Vec<HorizonWidths>,
     /// What the motions that were held out say.
     pub held_out: HeldOut,
+    /// The sets without a model, beside which the model's are judged; `None` for a model that knows
+    /// neither the robot nor its torque.
+    pub without_model: Option<WithoutModel>,
     /// What choices that were not applied would give, if the model is too wide to be of use.
     pub remedies: Vec<Finding>,
     /// Some windows for a page: windows that decide the sets, and others evenly spread.
@@ -146,12 +150,17 @@ impl Decided<'_> {
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
         let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
         let (origins, from_start) = (split.origins(), torque == Torque::Compensated);
-        let recordings =
-            Prepared { logs: &logs, origins: &origins, from_start, divides: true, simulated };
+        let shortest = if from_start { 0.0 } else { 0.5 / cut_off };
+        let (logs, origins) = (&*logs, &origins);
+        let recordings = Prepared { logs, origins, from_start, divides: true, simulated, shortest };
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (found, horizons) = found.map_err(|error| error.because(&findings))?;
-        let Widened { mut answer, finding, .. } = found;
+        let Widened { mut answer, finding, foretold, .. } = found;
         findings.extend(finding);
+        let horizon = chooser.choices.horizon.unwrap_or_default();
+        let is_kinematic = trial.equations.is_kinematic();
+        let without = || WithoutModel::new(&trial, &recordings, horizon, &foretold);
+        let without_model = (!is_kinematic).then(without).transpose()?;
         let choices = &chooser.choices;
         answer.model = answer.model.with_preparation(preparation(choices, torque));
         let wide =
@@ -168,7 +177,6 @@ impl Decided<'_> {
             split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
         let held_back = prepare_for(&raw, &robot, torque, settings, cut_off)?;
         let held_back = Prepared { logs: &held_back, divides: false, ..recordings };
-        let horizon = choices.horizon.unwrap_or_default();
         let are_whole = split.are_motions_whole();
         let compared = Compared::new(&answer, &recordings, &held_back, horizon, are_whole)?;
         let Compared { held_out, shown, shown_held_out } = compared;
@@ -182,6 +190,7 @@ impl Decided<'_> {
             findings,
             horizons,
             held_out,
+            without_model,
             remedies,
             shown,
             shown_held_out,

@@ -58,6 +58,8 @@ impl Choices {
             let counts = [joints, 2 * joints, 3 * joints];
             counts.contains(&values.len()) && values.iter().all(|value| value.is_finite())
         };
+        // Without an allowance, the file of choices has an empty list.
+        let allowance = |values: &[f64], count: usize| values.is_empty() || radii(values, count);
         type Check<'a> = &'a dyn Fn(&[f64], usize) -> bool;
         let lists: [(_, _, Check, _, _); 3] = [
             ("expansion", &self.expansion, &point, joints, "one position per joint, in rad or m"),
@@ -71,7 +73,7 @@ impl Choices {
             (
                 "allowance",
                 &self.allowance,
-                &radii,
+                &allowance,
                 3 * joints,
                 "3 radii per joint, from 0 to 1e9: X0 for all q, X0 for all qd, then U",
             ),

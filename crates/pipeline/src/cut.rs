@@ -66,8 +66,14 @@ impl Cut {
             None => raw.iter().map(|log| unfiltered(log, &[])).collect::<Result<_, _>>()?,
         };
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        let prepared =
-            Prepared { logs: &logs, origins, from_start: false, divides: false, simulated };
+        let prepared = Prepared {
+            logs: &logs,
+            origins,
+            from_start: false,
+            divides: false,
+            simulated,
+            shortest: 0.0,
+        };
         let windows = prepared.cut(horizon, usize::MAX)?.named(windows_of(paths));
         let [count, of] = [windows.runs().len(), raw.len()];
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));

@@ -14,6 +14,7 @@ use crate::choices::{Choice, Choices};
 use crate::compared::HeldOut;
 use crate::horizon::HorizonWidths;
 use crate::joint_row::JointRow;
+use crate::without_model::WithoutModel;
 
 /// The answer of `model` as JSON.
 #[derive(Serialize, JsonSchema)]
@@ -28,6 +29,9 @@ pub struct ModelOutput<'a> {
     joints: Vec<JointRow>,
     /// The check of the motions that were held out.
     held_out: &'a HeldOut,
+    /// The sets without a model, beside which the model's are judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    without_model: Option<&'a WithoutModel>,
     /// The horizons that were tried, with sets that have their allowance.
     horizons: &'a [HorizonWidths],
     /// The choices, each with its reason.
@@ -51,6 +55,7 @@ impl Built {
             horizon: self.choices.horizon,
             joints: self.joints(),
             held_out: &self.held_out,
+            without_model: self.without_model.as_ref(),
             horizons: &self.horizons,
             choices: &self.made,
             claim: &self.answer.model.proof.claim,

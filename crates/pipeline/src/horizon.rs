@@ -80,7 +80,7 @@ pub(crate) fn try_horizons(trial: &Trial, recordings: &Prepared) -> Result<Vec<H
 /// Returns the horizons that are tried and are longer than `than` \[s\], the shortest first.
 pub(crate) fn longer_horizons(recordings: &Prepared, than: f64) -> Vec<f64> {
     let steps = recordings.logs.iter().map(|log| log.step);
-    let shortest = 3.0 * steps.fold(0.0, f64::max);
+    let shortest = (3.0 * steps.fold(0.0, f64::max)).max(recordings.shortest);
     let whole = recordings.from_start.then(|| recordings.longest());
     let shorter = HORIZONS.into_iter().filter(|horizon| whole.is_none_or(|end| *horizon < end));
     let longer = |horizon: &f64| *horizon > than && *horizon >= shortest;

@@ -18,6 +18,9 @@ pub struct JointRow {
     /// The factor by which the set would have to grow where a motion that was held out leaves it
     /// furthest; `None` if none could be compared.
     pub growth: Option<f64>,
+    /// By which factor the set is narrower than without a model, both as wide as a motion needs
+    /// them that was left out; `None` if none was compared.
+    pub narrower: Option<f64>,
 }
 
 impl Built {
@@ -26,6 +29,10 @@ impl Built {
     pub fn joints(&self) -> Vec<JointRow> {
         let model = &self.answer.model;
         let widths = model.usefulness.iter().flat_map(|said| &said.joints).enumerate();
+        let narrower = |joint: usize| {
+            let without = self.without_model.as_ref()?;
+            Some(without.narrower[joint]).filter(|factor| factor.is_finite())
+        };
         let row = |(joint, width): (usize, &reachtube_conform::plausibility::JointWidth)| {
             let growth = self.held_out.growth[joint];
             JointRow {
@@ -34,6 +41,7 @@ impl Built {
                 displacement: width.displacement,
                 ratio: width.half_width.map(|_| width.ratio()),
                 growth: growth.is_finite().then_some(growth),
+                narrower: narrower(joint),
             }
         };
         widths.map(row).collect()

@@ -38,6 +38,7 @@ mod steps;
 mod summary;
 mod trial;
 mod windows;
+mod without_model;
 mod would_help;
 
 pub use build::{Built, build};
@@ -51,3 +52,4 @@ pub use horizon::HorizonWidths;
 pub use live::LiveMonitor;
 pub use prepared::{check_job, prepared};
 pub use scenario_job::{ScenarioJob, Verified, VerifyOutput};
+pub use without_model::WithoutModel;

@@ -76,7 +76,8 @@ pub fn prepared(
     let (from_start, origins) = (window.is_none(), &origins_of(&raw));
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-    let prepared = Prepared { logs: &logs, origins, from_start, divides: false, simulated };
+    let prepared =
+        Prepared { logs: &logs, origins, from_start, divides: false, simulated, shortest: 0.0 };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),

@@ -165,7 +165,7 @@ fn name(equations: Equations) -> String {
 
 fn other(equations: Equations) -> Equations {
     match equations {
-        Equations::Robot => Equations::Model,
         Equations::Model => Equations::Robot,
+        _ => Equations::Model,
     }
 }

@@ -238,9 +238,9 @@ impl Evidence<'_> {
 
     fn unexplained_part(&self, nominal: &Nominal) -> Result<f64> {
         let none = BTreeMap::new();
-        let (from_start, divides, simulated) = (false, false, false);
-        let recordings =
-            Prepared { logs: &nominal.logs, origins: &none, from_start, divides, simulated };
+        let (from_start, divides, simulated, shortest) = (false, false, false, 0.0);
+        let (logs, origins) = (&*nominal.logs, &none);
+        let recordings = Prepared { logs, origins, from_start, divides, simulated, shortest };
         let windows = recordings.cut(WINDOW, MOST_WINDOWS)?;
         let trial = Trial { robot: nominal.robot.clone(), ..self.trial.clone() };
         let answer = match trial.run(windows) {

@@ -60,6 +60,9 @@ impl Built {
             summary.verdict.extend(causes.map(|finding| finding.written_for(FrontEnd::Choices)));
         }
         summary.table = self.answer.table_at_horizon(&self.held_out.growth);
+        if let Some(without) = &self.without_model {
+            without.add_to(&mut summary.table);
+        }
         let is_said = |other: &&Finding| {
             Some(*other) == self.contradiction() || other.code == Code::TurnsMoved
         };
@@ -76,7 +79,10 @@ impl Built {
         for finding in &self.remedies {
             summary.fact("would help", finding.written_for(FrontEnd::Choices));
         }
-        summary.fact("widest set by horizon, of the motion in some windows", self.growth());
+        if let Some(without) = &self.without_model {
+            summary.fact("without a model", without.words());
+        }
+        summary.fact("widest set by horizon", self.growth());
         summary.next = None;
         summary
     }

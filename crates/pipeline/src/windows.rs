@@ -25,6 +25,9 @@ pub(crate) struct Prepared<'a> {
     pub divides: bool,
     /// Whether the recordings are simulated.
     pub simulated: bool,
+    /// The shortest horizon that is tried, s: over less than half a period of the cut-off, sets
+    /// measure the low-pass.
+    pub shortest: f64,
 }
 
 /// The log of a recording.
@@ -110,7 +113,8 @@ impl Prepared<'_> {
         self.logs.iter().map(beginning).collect()
     }
 
-    fn motion<'a>(&'a self, log: &'a String) -> &'a str {
+    /// Returns the motion that a log shows.
+    pub(crate) fn motion<'a>(&'a self, log: &'a str) -> &'a str {
         self.origins.get(log).map_or(log, |origin| &origin.motion)
     }
 }
@@ -129,5 +133,6 @@ fn run(log: &PreparedLog) -> Run {
     let times = (0..log.len()).map(time).collect();
     let run = Run::new(log.joints, times, states, log.tau.clone())
         .expect("a window has one row of finite numbers for each sample");
-    Run { temperatures: log.temperatures.clone(), ..run }
+    let before = log.before.get(..3 * log.joints).unwrap_or_default().to_vec();
+    Run { temperatures: log.temperatures.clone(), before, ..run }
 }

@@ -51,7 +51,8 @@ impl Run {
     pub fn with_digest(mut self) -> Self {
         if self.sha256.is_empty() {
             let mut digest = Sha256::new();
-            let numbers = [&self.times, &self.states, &self.torques, &self.temperatures];
+            let Self { times, states, torques, temperatures, before, .. } = &self;
+            let numbers = [times, states, torques, temperatures, before];
             numbers.into_iter().flatten().for_each(|value| digest.update(value.to_le_bytes()));
             self.sha256 = reachtube_files::hex(&digest.finalize());
         }

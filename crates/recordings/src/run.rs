@@ -14,6 +14,9 @@ pub struct Run {
     pub torques: Vec<f64>,
     /// Recorded temperatures of the joints, °C, row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
+    /// What was known of the motion before its first sample, from earlier samples alone: estimates
+    /// of q, q̇ and q̈ at the first sample, 3n, rad, rad/s and rad/s²; empty if nothing was.
+    pub before: Vec<f64>,
     /// SHA-256 of the file, or of the numbers of a run in memory, in lower-case hexadecimal.
     pub sha256: String,
 }
@@ -112,8 +115,9 @@ impl Run {
         }
         let start = times.first().copied().ok_or(RunError::NoSample)?;
         let times = times.iter().map(|time| time - start).collect();
-        let (temperatures, sha256) = (vec![], String::new());
-        Ok(Self { joints, start, times, states, torques, temperatures, sha256 })
+        let [temperatures, before] = [vec![], vec![]];
+        let sha256 = String::new();
+        Ok(Self { joints, start, times, states, torques, temperatures, before, sha256 })
     }
 
     /// Returns the run with the temperatures of its joints, °C, row-major K x n.

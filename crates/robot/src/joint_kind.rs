@@ -55,6 +55,15 @@ impl JointKind {
         }
     }
 
+    /// Returns the unit of an acceleration.
+    #[must_use]
+    pub fn acceleration_unit(self) -> &'static str {
+        match self {
+            Self::Revolute => "rad/s²",
+            Self::Prismatic => "m/s²",
+        }
+    }
+
     /// Returns the unit of a torque, which is a force for a prismatic joint.
     #[must_use]
     pub fn force_unit(self) -> &'static str {

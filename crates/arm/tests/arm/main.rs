@@ -9,6 +9,7 @@ mod fit_schunk;
 mod fold;
 mod friction;
 mod guarantees;
+mod kinematic;
 mod model_file;
 mod monitor;
 mod next_motion;

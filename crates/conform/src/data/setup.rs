@@ -64,7 +64,11 @@ pub trait Drive: Debug + Send + Sync {
     fn input_key(&self, at: Option<&Condition>) -> String;
 
     /// Returns what evaluates the inputs of samples that are `step` \[s\] apart.
-    fn live_input(&self, step: f64) -> Box<dyn LiveInput>;
+    ///
+    /// # Errors
+    ///
+    /// Inputs that samples alone do not give.
+    fn live_input(&self, step: f64) -> Result<Box<dyn LiveInput>>;
 
     /// Returns what the numbers of the model are.
     fn signals(&self) -> &Signals;

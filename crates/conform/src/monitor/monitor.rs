@@ -112,7 +112,7 @@ impl Monitor {
         let input_gains = settings.disturbance.input_gains(&propagation);
         let grid = Grid { times: Arc::new(times), propagation, input_gains };
         let sets = Sets::new(grid, model.sets(), settings.states.rows(2 * n));
-        let input = setup.drive.live_input(step);
+        let input = setup.drive.live_input(step)?;
         let windows = vec![Window::new(n); steps / every + 1];
         // Samples at even times that one sample may complete.
         let at_once = (schedule.longest_gap / step).ceil() as usize + 1;

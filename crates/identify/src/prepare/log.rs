@@ -20,6 +20,11 @@ pub struct PreparedLog {
     pub tau: Vec<f64>,
     /// Temperatures of the joints \[°C\], row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
+    /// What is known of each sample from those before it alone ([`Run::before`]), row-major K x
+    /// 3n; empty if nothing is.
+    ///
+    /// [`Run::before`]: reachtube_recordings::Run::before
+    pub before: Vec<f64>,
     /// Number of the recording since the robot's start, from 1, if it is known.
     pub order: Option<u64>,
     /// Least speed of each joint about each sample \[rad/s\], row-major K x n, for a log that was
@@ -42,6 +47,7 @@ impl PreparedLog {
             qdd,
             tau,
             temperatures: vec![],
+            before: vec![],
             order: None,
             slowest: vec![],
         }
@@ -71,6 +77,7 @@ impl PreparedLog {
             qdd: rows(&self.qdd),
             tau: rows(&self.tau),
             temperatures: rows(&self.temperatures),
+            before: vec![],
             slowest: kept().flat_map(|k| (0..n).map(move |j| slowest(k, j))).collect(),
             name: self.name.clone(),
             ..*self
@@ -144,13 +151,13 @@ impl PreparedLog {
     #[must_use]
     pub fn interval(&self, range: std::ops::Range<usize>) -> Self {
         let n = self.joints;
-        let rows = |values: &[f64]| match values {
+        let of = |values: &[f64], n: usize| match values {
             [] => vec![],
             values => values[range.start * n..range.end * n].to_vec(),
         };
         let [q, qd, qdd, tau, temperatures, slowest] =
             [&self.q, &self.qd, &self.qdd, &self.tau, &self.temperatures, &self.slowest]
-                .map(|values| rows(values));
+                .map(|values| of(values, n));
         Self {
             name: self.name.clone(),
             joints: n,
@@ -161,6 +168,7 @@ impl PreparedLog {
             qdd,
             tau,
             temperatures,
+            before: of(&self.before, 3 * n),
             order: self.order,
             slowest,
         }

@@ -17,6 +17,7 @@ pub(crate) mod log;
 mod low_pass;
 mod motors;
 mod noise;
+mod past;
 pub(crate) mod prepared;
 pub(crate) mod raw_log;
 pub(crate) mod read;

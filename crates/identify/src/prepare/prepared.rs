@@ -162,6 +162,7 @@ pub(crate) fn prepare_one(
     };
     let gains = settings.gain_of_each_joint(raw.run.joints)?;
     let mut log = signals.log(&gains, differentiated);
+    log.before = signals.before(0.5 / cut_off, differentiated);
     if let Some(robot) = compensated {
         signals.compensate(&mut log, robot);
         if settings.torque == Some(Torque::Link) {
@@ -197,6 +198,7 @@ mod tests {
             torques: times.iter().map(torques).collect(),
             times,
             temperatures: vec![],
+            before: vec![],
             sha256: String::new(),
         };
         RawLog {

@@ -7,6 +7,7 @@ use crate::prepare::derivative::derivative;
 use crate::prepare::lag::Lag;
 use crate::prepare::log::PreparedLog;
 use crate::prepare::low_pass::LowPass;
+use crate::prepare::past::Past;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::resampled;
 
@@ -45,6 +46,22 @@ impl<'a> Signals<'a> {
         };
         let lags: Vec<Lag> = (0..self.raw.run.joints).filter_map(of_joint).collect();
         Lag::contradict(&lags, self.step)
+    }
+
+    /// Returns what is known of each sample from the last `span` \[s\] alone, K x 3n.
+    pub(super) fn before(&self, span: f64, differentiated: bool) -> Vec<f64> {
+        let n = self.raw.run.joints;
+        let past = Past::new(span, self.step, !differentiated);
+        let mut rows = Vec::new();
+        for joint in 0..n {
+            let [q, qd] = [Run::q, Run::qd].map(|of| self.even(of, joint));
+            rows.resize(3 * n * q.len(), 0.0);
+            for (k, row) in rows.chunks_exact_mut(3 * n).enumerate() {
+                let estimate = past.estimate(&q[..=k], &qd[..=k]);
+                estimate.into_iter().enumerate().for_each(|(i, value)| row[i * n + joint] = value);
+            }
+        }
+        rows
     }
 
     /// Returns the filtered log with the ends still in place; `gains` has one value per joint.

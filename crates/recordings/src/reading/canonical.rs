@@ -113,6 +113,7 @@ pub(super) fn recording(
         states: values(states),
         torques: values(from(1 + 2 * n).collect()),
         temperatures: temperatures.map_or(vec![], |first| values(from(first).collect())),
+        before: vec![],
         sha256: String::new(),
     };
     Ok((run, table))

@@ -203,6 +203,7 @@ impl Log<'_> {
             torques: rows(&[tau.as_ref().unwrap_or(&still)]),
             temperatures: rows(&[&assignment.temperatures.as_ref().map_or(vec![], columns)]),
             times,
+            before: vec![],
             sha256: String::new(),
         };
         let name = files[0].display();

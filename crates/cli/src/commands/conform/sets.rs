@@ -129,7 +129,13 @@ const NOMINAL_STARTS: Choices = &[
     ("own", "each run's own first state"),
 ];
 
-const EQUATIONS: Choices = &[("model", "the model's"), ("robot", "the robot's")];
+const EQUATIONS: Choices = &[
+    ("model", "the model's"),
+    ("robot", "the robot's"),
+    ("velocity", "none: without the robot and its torque, the velocity stays"),
+    ("decaying", "none: the acceleration at the start dies out"),
+    ("held", "none: the acceleration at the start stays"),
+];
 
 const METHODS: Choices =
     &[("program", "linear programs"), ("bisection", "one radius after the other, as in the paper")];

@@ -36,6 +36,7 @@ struct RunForm {
     states: Vec<f64>,
     torques: Vec<f64>,
     temperatures: Vec<f64>,
+    before: Vec<f64>,
     sha256: String,
 }
 

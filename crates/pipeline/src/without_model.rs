@@ -1,0 +1,237 @@
+//! What the recordings say without a model of the robot: the least that a model must beat.
+//!
+//! A joint whose acceleration lies in a box needs no robot and no torque. Its sets are found, proved
+//! and left out of in turn by the same steps as those of the model, over the same windows, so that
+//! both can be compared: each with the factor by which the sets of the others have to grow for the
+//! motion that leaves them furthest.
+
+use reachtube_arm::{ArmModel, Equations};
+use reachtube_conform::{Answer, CheckJob, Silent};
+use reachtube_finding::Table;
+use reachtube_identify::prepare::PreparedLog;
+use reachtube_scalar::number::significant;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::allowance::Widened;
+use crate::carried_over::Unseen;
+use crate::error::Result;
+use crate::horizon::MOST_WINDOWS;
+use crate::trial::Trial;
+use crate::windows::Prepared;
+
+/// The sets of a model at the horizon, as wide as a motion needs them that they have not seen.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Foretold {
+    /// Half the width of the set of each joint's position for the recordings, n, rad (m).
+    half_widths: Vec<f64>,
+    /// The displacement of each joint, n, rad (m).
+    displacements: Vec<f64>,
+    /// The factor by which the sets of the other motions enclose each motion; at least 1, and
+    /// infinite if none does.
+    factor: f64,
+}
+
+/// Sets without a model beside those of the model.
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+pub struct WithoutModel {
+    /// What stands in place of the robot's motion.
+    pub equations: Equations,
+    /// Half the width of the widest set by the joint's displacement, with the factor that a motion
+    /// needs which is left out; `None` where no factor suffices.
+    pub widest: Option<f64>,
+    /// The same of the model.
+    pub widest_of_model: Option<f64>,
+    /// For each joint, n, half the width without a model by half the width with it, both with that
+    /// factor.
+    #[serde(skip)]
+    pub narrower: Vec<f64>,
+    /// Part of the rows of the faster half of the motions that lie outside the sets of the slower
+    /// half: of the model, and without one. `None` for a single motion.
+    pub faster: Option<[f64; 2]>,
+}
+
+impl Foretold {
+    /// Takes the sets of an answer before they were widened, and motions that were left out.
+    pub(crate) fn new(answer: &Answer, left_out: &[Unseen]) -> Self {
+        let joints = &answer.found.usefulness.joints;
+        let gauge = |unseen: &Unseen| unseen.left_out.gauge.unwrap_or(f64::INFINITY);
+        Self {
+            half_widths: joints.iter().map(|own| own.half_width.unwrap_or(f64::INFINITY)).collect(),
+            displacements: joints.iter().map(|own| own.displacement).collect(),
+            factor: left_out.iter().map(gauge).fold(1.0, f64::max),
+        }
+    }
+
+    fn half_width(&self, joint: usize) -> f64 {
+        self.factor * self.half_widths[joint]
+    }
+
+    /// Returns half the width of the widest set by the joint's displacement.
+    fn widest(&self) -> f64 {
+        let ratio = |joint: usize| self.half_width(joint) / self.displacements[joint];
+        (0..self.half_widths.len()).map(ratio).fold(0.0, f64::max)
+    }
+}
+
+impl WithoutModel {
+    /// Compares the sets of a model with the narrowest sets without one.
+    ///
+    /// # Errors
+    ///
+    /// As [`Widened::new`].
+    pub(crate) fn new(
+        trial: &Trial,
+        recordings: &Prepared,
+        horizon: f64,
+        own: &Foretold,
+    ) -> Result<Self> {
+        let mut best: Option<(Equations, f64)> = None;
+        for equations in Equations::KINEMATIC {
+            let other = kinematic(trial, equations);
+            let found = Widened::of_some(&other, recordings, horizon, MOST_WINDOWS)?;
+            let widest = found.foretold.widest();
+            if best.is_none_or(|(_, narrowest)| widest < narrowest) {
+                best = Some((equations, widest));
+            }
+        }
+        let equations = best.map_or(Equations::Velocity, |(equations, _)| equations);
+        let other = kinematic(trial, equations);
+        let without = Widened::new(&other, recordings, horizon)?.foretold;
+        let narrower = |joint| without.half_width(joint) / own.half_width(joint);
+        let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
+        Ok(Self {
+            equations,
+            widest: finite(without.widest()),
+            widest_of_model: finite(own.widest()),
+            narrower: (0..own.half_widths.len()).map(narrower).collect(),
+            faster: to_faster([trial, &other], recordings, horizon)?,
+        })
+    }
+
+    /// Returns whether the model is worth having: its sets are narrower than without one, and no more
+    /// rows of faster motions lie outside.
+    #[must_use]
+    pub(crate) fn is_model_better(&self) -> bool {
+        self.gain() > 1.0 && self.faster.is_none_or(|[own, without]| own <= without)
+    }
+
+    /// Returns the geometric mean over the joints of the factor by which sets are narrower.
+    fn gain(&self) -> f64 {
+        let logarithms = self.narrower.iter().map(|factor| factor.ln());
+        (logarithms.sum::<f64>() / self.narrower.len().max(1) as f64).exp()
+    }
+
+    /// Adds a column to a table of the joints: by which factor their sets are narrower.
+    pub(crate) fn add_to(&self, table: &mut Table) {
+        table.header.push("narrower".into());
+        for (row, narrower) in table.rows.iter_mut().zip(&self.narrower) {
+            row.push(if narrower.is_finite() {
+                significant(*narrower, 2).to_string()
+            } else {
+                "-".into()
+            });
+        }
+    }
+
+    /// Returns why a model is not worth having, in a few words.
+    pub(crate) fn why_better(&self) -> String {
+        match self.faster {
+            Some([own, without]) if self.gain() > 1.0 => format!(
+                "of faster motions {} of the rows leave its sets, and without a model {},",
+                percent(Some(own)),
+                percent(Some(without))
+            ),
+            _ => format!(
+                "without a model the sets are no wider ({} times as wide)",
+                significant(self.gain(), 2)
+            ),
+        }
+    }
+
+    /// Returns how the sets without a model compare, in a few words.
+    pub(crate) fn words(&self) -> String {
+        let start = match self.equations {
+            Equations::Held => "acceleration of the start held",
+            Equations::Decaying => "acceleration of the start decaying",
+            _ => "velocity of the start held",
+        };
+        let [own, without] = [self.widest_of_model, self.widest].map(percent);
+        let faster = self.faster.map_or_else(String::new, |[own, without]| {
+            let [own, without] = [own, without].map(|part| percent(Some(part)));
+            format!(", {without} of faster motions outside (with it: {own})")
+        });
+        format!(
+            "sets {} times as wide ({start}), the widest {without} (with it: {own}){faster}",
+            significant(self.gain(), 2)
+        )
+    }
+}
+
+fn percent(part: Option<f64>) -> String {
+    match part {
+        None => "without bound".into(),
+        Some(part) if part > 0.0 && part < 0.01 => format!("{:.1} %", 100.0 * part),
+        Some(part) => format!("{:.0} %", 100.0 * part),
+    }
+}
+
+/// Returns the trial without a model.
+fn kinematic<'a>(trial: &Trial<'a>, equations: Equations) -> Trial<'a> {
+    Trial { equations, allowance: None, folds: &[], fit: None, ..trial.clone() }
+}
+
+/// Returns which part of the rows of the faster half of the motions lies outside the sets of the
+/// slower half, for each of some trials. A motion is as fast as its largest acceleration beside the
+/// root mean square of all.
+fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result<Option<[f64; 2]>> {
+    let [slower, faster] = by_speed(recordings);
+    if slower.is_empty() || recordings.from_start {
+        return Ok(None);
+    }
+    let [slower, faster] =
+        [&slower, &faster].map(|logs| Prepared { logs, divides: false, ..*recordings });
+    let outside = |trial: &Trial| -> Result<f64> {
+        let trial = Trial { allowance: None, fit: None, ..trial.clone() };
+        let model = trial.run(slower.cut(horizon, MOST_WINDOWS)?)?.model;
+        let setup = model.setup()?;
+        let check = CheckJob::new(model, setup, faster.cut(horizon, MOST_WINDOWS)?);
+        let verdict = check.run(&Silent)?.verdict;
+        Ok(verdict.violations.count as f64 / verdict.rows.max(1) as f64)
+    };
+    let [own, without] = trials.map(outside);
+    Ok(own.ok().zip(without.ok()).map(|(own, without)| [own, without]))
+}
+
+/// Returns the recordings of the slower and of the faster half of the motions; none of a single
+/// motion.
+fn by_speed(recordings: &Prepared) -> [Vec<PreparedLog>; 2] {
+    let Some(n) = recordings.logs.first().map(|log| log.joints) else { return Default::default() };
+    let square = |joint: usize| {
+        let values =
+            recordings.logs.iter().flat_map(move |log| log.qdd.iter().skip(joint).step_by(n));
+        values.map(|qdd| qdd * qdd).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
+    };
+    let scales: Vec<f64> = (0..n).map(square).collect();
+    let peak = |log: &PreparedLog| {
+        let rows = log.qdd.chunks_exact(n).flat_map(|row| row.iter().zip(&scales));
+        rows.map(|(qdd, scale)| qdd.abs() / scale).fold(0.0, f64::max)
+    };
+    let mut motions: Vec<(&str, f64)> = Vec::new();
+    for log in recordings.logs {
+        let motion = recordings.motion(&log.name);
+        match motions.iter_mut().find(|(name, _)| *name == motion) {
+            Some((_, fastest)) => *fastest = fastest.max(peak(log)),
+            None => motions.push((motion, peak(log))),
+        }
+    }
+    if motions.len() < 2 {
+        return Default::default();
+    }
+    motions.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let slow = &motions[..motions.len() / 2];
+    let is_slow =
+        |log: &&PreparedLog| slow.iter().any(|(name, _)| *name == recordings.motion(&log.name));
+    let (slower, faster) = recordings.logs.iter().partition::<Vec<&PreparedLog>, _>(is_slow);
+    [slower, faster].map(|logs| logs.into_iter().cloned().collect())
+}
