@@ -115,15 +115,9 @@ class Monitor:
             parts = {name: part[np.newaxis] for name, part in parts.items()}
         return [Leave(*left) for left in self._native.push(times, *parts.values())]
 
-    def finish(self) -> list[Leave]:
-        """End a recording: judge what waits for later samples, and begin anew at any time.
-
-        Returns
-        -------
-        list of Leave
-            The values outside that `push` has not returned.
-        """
-        return [Leave(*left) for left in self._native.finish()]
+    def finish(self) -> None:
+        """End a recording, and begin anew at any time."""
+        self._native.finish()
 
     @property
     def alarms(self) -> list[Alarm]:

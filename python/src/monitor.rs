@@ -102,12 +102,8 @@ impl NativeMonitor {
         take().map_err(|failure| failure.raised(py))
     }
 
-    fn finish(&mut self) -> Vec<Left> {
-        let left = self.monitor.finish();
-        self.first = self.first.or(left.first().copied());
-        let left = left.iter().map(left_of).collect();
-        self.alarms.extend_from_slice(self.monitor.alarms());
-        left
+    fn finish(&mut self) {
+        self.monitor.finish();
     }
 
     /// Returns all alarms so far.

@@ -2,6 +2,8 @@ use std::borrow::Cow;
 
 use reachtube_abstraction::{Abstraction, PolynomialModel};
 use reachtube_conform::{Error, Result, Settings, Setup};
+use reachtube_finding::Advice;
+use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
 use crate::settings::ArmSettings;
@@ -16,6 +18,9 @@ use crate::system::{system, system_of};
 pub fn setup(basis: impl Into<Basis>, arm: ArmSettings, settings: Settings) -> Result<Setup> {
     basis.into().setup(arm, settings)
 }
+
+const MOTORS: &str = "the abstraction has the inertia of motors, which torques behind the gears do \
+                      not drive; make it again of a robot without `armature`";
 
 /// What the nominal model is made of.
 #[derive(Debug, Clone)]
@@ -62,7 +67,8 @@ impl Basis {
         })
     }
 
-    /// Makes the setup of a conformance.
+    /// Makes the setup of a conformance. Torques behind the gears do not drive the motors, whose
+    /// inertia the model then does not have.
     ///
     /// # Errors
     ///
@@ -70,6 +76,10 @@ impl Basis {
     pub fn setup(self, arm: ArmSettings, settings: Settings) -> Result<Setup> {
         match self {
             Self::Robot(robot) => {
+                let robot = match arm.torque {
+                    Torque::Link => Box::new(robot.without_motors()),
+                    Torque::Motor | Torque::Compensated => robot,
+                };
                 robot.check_physical().map_err(Error::other)?;
                 settings.validate(robot.joint_count())?;
                 let dynamics = system(&robot, &arm, settings.method)?;
@@ -77,6 +87,10 @@ impl Basis {
             }
             Self::Abstraction(model) => {
                 let robot = Robot::from_description(model.robot()).map_err(Error::other)?;
+                let has_motors = robot.joints().iter().any(|joint| joint.armature > 0.0);
+                if arm.torque == Torque::Link && has_motors {
+                    return Err(Error::Drive(Advice::from(MOTORS)));
+                }
                 robot.check_physical().map_err(Error::other)?;
                 let abstraction = Abstraction { model: model.kind(), order: model.order() };
                 let expansion_point = model.expansion_point().clone();

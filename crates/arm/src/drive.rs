@@ -57,8 +57,8 @@ impl Drive for Arm {
         }
     }
 
-    fn live_input(&self, step: f64) -> Result<Box<dyn LiveInput>> {
-        Ok(Box::new(ArmInput::new(self, step)))
+    fn live_input(&self) -> Result<Box<dyn LiveInput>> {
+        Ok(Box::new(ArmInput::new(self)))
     }
 
     fn signals(&self) -> &Signals {

@@ -7,9 +7,6 @@ use reachtube_reach::TimeGrid;
 use reachtube_recordings::{Defect, Run, Torque, check_limits};
 use reachtube_robot::Robot;
 
-/// Accelerations are differences of velocities over at least this time to both sides, s.
-pub(super) const SPAN: f64 = 0.02;
-
 /// Evaluates the input along a run, eq. (11) of the paper, and checks its units and times.
 ///
 /// # Errors
@@ -22,7 +19,7 @@ pub(super) fn input(
     torque: Torque,
 ) -> Result<RunInput, Vec<Defect>> {
     let grid = grid(path, run, robot)?;
-    let mut inputs = match torque {
+    let inputs = match torque {
         Torque::Compensated => run.torques.clone(),
         Torque::Motor | Torque::Link => {
             let input =
@@ -30,9 +27,6 @@ pub(super) fn input(
             (0..run.len()).flat_map(input).collect()
         }
     };
-    if torque == Torque::Link {
-        add_motor_inertia(run, robot, &mut inputs);
-    }
     Ok(RunInput { grid: Arc::new(grid), inputs: inputs.into() })
 }
 
@@ -46,24 +40,4 @@ pub(super) fn grid(path: &Path, run: &Run, robot: &Robot) -> Result<TimeGrid, Ve
         let remedy = "sort the samples, drop duplicates";
         vec![Defect::new(path, None, error.to_string(), remedy)]
     })
-}
-
-/// Adds to inputs from torques behind the gear what the motors' inertia takes, J q̈, which their
-/// sensors do not measure. The model has this inertia. The acceleration is the difference of the
-/// velocities over at least [`SPAN`] to both sides.
-fn add_motor_inertia(run: &Run, robot: &Robot, inputs: &mut [f64]) {
-    let inertia: Vec<f64> = robot.joints().iter().map(|joint| joint.armature).collect();
-    let (times, last) = (&run.times, run.len().saturating_sub(1));
-    if last == 0 || inertia.iter().all(|inertia| *inertia == 0.0) {
-        return;
-    }
-    for (k, inputs) in inputs.chunks_exact_mut(run.joints).enumerate() {
-        let before = times.partition_point(|time| *time < times[k] - SPAN).min(k.max(1) - 1);
-        let after = times.partition_point(|time| *time < times[k] + SPAN).min(last);
-        let duration = times[after] - times[before];
-        for (joint, u) in inputs.iter_mut().enumerate() {
-            let change = run.qd(after)[joint] - run.qd(before)[joint];
-            *u += inertia[joint] * change / duration;
-        }
-    }
 }

@@ -6,7 +6,9 @@ use reachtube_conform::data::Case;
 use crate::arm::Arm;
 use crate::correction::InputCorrection;
 use crate::corrector::Corrector;
-use crate::input::SPAN;
+
+/// Accelerations are differences of velocities over at least this time to both sides, s.
+const SPAN: f64 = 0.02;
 
 /// Samples of a case at most: they lie so close that more show nothing new.
 const MOST_SAMPLES: usize = 200;

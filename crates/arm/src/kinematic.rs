@@ -13,7 +13,7 @@ use reachtube_recordings::{Defect, Run};
 
 use crate::arm::Arm;
 use crate::input::grid;
-use crate::live_input::ArmInput;
+use crate::live_input::NoInput;
 use crate::settings::Equations;
 
 /// An arm that drives a model by where its motion starts, and by nothing later.
@@ -53,9 +53,9 @@ impl Drive for Kinematic {
         format!("{:?}", self.0.settings.equations)
     }
 
-    fn live_input(&self, _step: f64) -> Result<Box<dyn LiveInput>> {
+    fn live_input(&self) -> Result<Box<dyn LiveInput>> {
         match self.0.settings.equations {
-            Equations::Velocity => Ok(Box::new(ArmInput::zero(self.0.robot().joint_count()))),
+            Equations::Velocity => Ok(Box::new(NoInput)),
             _ => Err(Error::Drive(
                 Advice::from("a monitor does not know the acceleration at the start of a motion")
                     .with("equations", "velocity"),

@@ -42,7 +42,6 @@ mod cause;
 mod causes;
 mod correction;
 mod corrector;
-mod delayed;
 mod drive;
 mod dry_friction;
 mod friction;

@@ -11,13 +11,9 @@ use reachtube_robot::{
 ///
 /// Without `motor_inertia` it has no motor inertia either, because the torque does not drive it.
 pub(crate) fn with_gravity_of_links(robot: &Robot, motor_inertia: bool) -> Result<Robot> {
+    let robot = if motor_inertia { robot } else { &robot.without_motors() };
     let mut description = robot.description().clone();
-    for joint in &mut description.joints {
-        joint.gravity_moments = None;
-        if !motor_inertia {
-            (joint.armature, joint.rotor_inertia) = (None, None);
-        }
-    }
+    description.joints.iter_mut().for_each(|joint| joint.gravity_moments = None);
     Ok(Robot::from_description(&description)?)
 }
 

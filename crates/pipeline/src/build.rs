@@ -12,7 +12,7 @@ use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_R
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
-use crate::findings::{impossible_links, unknown_motors, unless_accepted};
+use crate::findings::{ignored_motors, impossible_links, unless_accepted};
 use crate::first_choices::first_choices;
 use crate::held_out::Split;
 use crate::horizon::{
@@ -144,7 +144,6 @@ impl Decided<'_> {
         let Evidence { torque, settings, cut_off, trial, .. } = *self.evidence;
         let Nominal { robot, logs, findings, is_identified, .. } = chosen;
         let mut findings = unless_accepted(findings, given);
-        findings.extend(unknown_motors(&robot, torque));
         findings.extend(impossible_links(self.robot));
         let has_folds = is_identified && torque != Torque::Compensated;
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
@@ -180,13 +179,14 @@ impl Decided<'_> {
         let are_whole = split.are_motions_whole();
         let compared = Compared::new(&answer, &recordings, &held_back, horizon, are_whole)?;
         let Compared { held_out, shown, shown_held_out } = compared;
+        let notes = read.0.into_iter().chain(ignored_motors(&robot, torque)).collect();
         findings.extend(read.1.into_iter().chain(held_out.finding(choices)));
         Ok(Built {
             answer,
             robot,
             choices: chooser.choices,
             made: chooser.made,
-            notes: read.0,
+            notes,
             findings,
             horizons,
             held_out,

@@ -7,7 +7,5 @@ reachtube_finding::codes! {
         Contradiction = "contradiction",
         /// Positions that were whole turns away from other recordings were moved.
         TurnsMoved = "turns-moved",
-        /// The torques were measured behind the gears, and the inertia of motors is unknown.
-        MotorsUnknown = "motors-unknown",
     }
 }

@@ -43,20 +43,15 @@ pub(crate) fn impossible_links(robot: &Robot) -> Option<Finding> {
     })
 }
 
-/// Returns a warning if torques were measured behind the gears and the robot has joints without
-/// motor inertia.
-pub(crate) fn unknown_motors(robot: &Robot, torque: Torque) -> Option<Finding> {
-    let unknown = robot.joints().iter().filter(|joint| joint.armature == 0.0);
-    let names: Vec<&str> = unknown.map(|joint| joint.name.as_str()).collect();
+/// Returns a note if torques were measured behind the gears and the description has motors.
+pub(crate) fn ignored_motors(robot: &Robot, torque: Torque) -> Option<String> {
+    let motors = robot.joints().iter().filter(|joint| joint.armature > 0.0);
+    let names: Vec<&str> = motors.map(|joint| joint.name.as_str()).collect();
     (torque == Torque::Link && !names.is_empty()).then(|| {
-        let text = format!(
-            "the torques were measured behind the gears, where the inertia of the motors has no \
-                effect, and the description has none for {}: the links of a wrist alone have \
-                almost no inertia, so that its sets are wide; give `armature` for these joints, \
-                kg m²",
+        format!(
+            "the inertia of the motors of {} is not used: torques behind the gears do not drive it",
             names.join(", ")
-        );
-        warning(Code::MotorsUnknown, &text)
+        )
     })
 }
 

@@ -56,6 +56,7 @@ pub(crate) fn first_choices<'a, 'b: 'a>(
     let (allowance, fit, progress) = (given.allowance, None, chooser.progress);
     let trial = Trial {
         robot,
+        torque,
         expansion,
         sensor_noise,
         equations,

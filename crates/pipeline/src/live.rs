@@ -18,8 +18,6 @@ pub struct LiveMonitor {
     monitor: Monitor,
     leaves: Vec<Leave>,
     alarms: Vec<Alarm>,
-    /// Whether the last recording was ended.
-    is_over: bool,
 }
 
 impl LiveMonitor {
@@ -41,7 +39,7 @@ impl LiveMonitor {
         };
         let leaves = Vec::with_capacity(KEPT * 2 * model.joints());
         let alarms = Vec::with_capacity(KEPT * (2 * model.joints() + 1));
-        Ok(Self { log, monitor, leaves, alarms, is_over: false })
+        Ok(Self { log, monitor, leaves, alarms })
     }
 
     /// Learns what healthy motion is from recordings as the logs of a model hold them.
@@ -85,11 +83,10 @@ impl LiveMonitor {
         Ok(self.monitor.watch(healthy)?)
     }
 
-    /// Returns what the samples that were pushed last, or a finish, show to be unlike healthy
-    /// motion.
+    /// Returns what the samples that were pushed last show to be unlike healthy motion.
     #[must_use]
     pub fn alarms(&self) -> &[Alarm] {
-        if self.is_over || self.log.is_none() { self.monitor.alarms() } else { &self.alarms }
+        if self.log.is_none() { self.monitor.alarms() } else { &self.alarms }
     }
 
     /// Takes a sample as [`Monitor::push`] does: time \[s\], positions, velocities and torques as
@@ -105,7 +102,6 @@ impl LiveMonitor {
         qd: &[f64],
         torque: &[f64],
     ) -> Result<&[Leave], SampleError> {
-        self.is_over = false;
         let Self { log, monitor, leaves, alarms, .. } = self;
         let Some(log) = log else { return monitor.push(time, q, qd, torque) };
         log.take(time, [q, qd, torque])?;
@@ -124,10 +120,11 @@ impl LiveMonitor {
     }
 
     /// Ends a recording, as [`Monitor::finish`].
-    pub fn finish(&mut self) -> &[Leave] {
+    pub fn finish(&mut self) {
         self.log.iter_mut().for_each(LiveLog::clear);
-        self.is_over = true;
-        self.monitor.finish()
+        self.leaves.clear();
+        self.alarms.clear();
+        self.monitor.finish();
     }
 
     /// Returns what was found so far.
@@ -139,7 +136,7 @@ impl LiveMonitor {
     /// Returns the time by which answers are late, s.
     #[must_use]
     pub fn delay(&self) -> f64 {
-        self.log.as_ref().map_or(0.0, LiveLog::delay) + self.monitor.delay()
+        self.log.as_ref().map_or(0.0, LiveLog::delay)
     }
 }
 

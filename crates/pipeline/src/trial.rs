@@ -19,6 +19,8 @@ use crate::steps::Steps;
 pub(crate) struct Trial<'a> {
     /// The robot, whose own equations the nominal motions may satisfy.
     pub robot: Robot,
+    /// What the recorded torques are.
+    pub torque: Torque,
     /// The position about which deviations are linear, n, rad.
     pub expansion: Vec<f64>,
     /// Radii of the sensors' noise, 2n, rad and rad/s.
@@ -131,7 +133,11 @@ impl Trial<'_> {
             equations: self.equations,
             ..ArmSettings::new(Torque::Compensated, n)
         };
-        let setup = Basis::from(self.robot.clone()).setup(arm, settings)?;
+        let robot = match self.torque {
+            Torque::Link => self.robot.without_motors(),
+            Torque::Motor | Torque::Compensated => self.robot.clone(),
+        };
+        let setup = Basis::from(robot).setup(arm, settings)?;
         Ok(Job::new(setup, windows).fit(self.fit.clone()))
     }
 }

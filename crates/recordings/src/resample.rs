@@ -5,29 +5,26 @@ use crate::sample_error::SampleError;
 /// Times that agree to this many s count as equal, as in a grid of recorded times.
 const SAME: f64 = 1e-12;
 
-/// One sample: its time, q, q̇ and the torque (3n), and what is added to the input (n).
+/// One sample: its time, q, q̇ and the torque (3n).
 #[derive(Debug, Clone, Default)]
 pub struct Sample {
     /// Its time, s.
     pub time: f64,
     /// Positions, velocities and torques, 3n.
     pub values: Vec<f64>,
-    /// Torque added to the input, n, N m.
-    pub added: Vec<f64>,
 }
 
 impl Sample {
     /// Returns a sample of zeros.
     #[must_use]
     pub fn zeros(joints: usize) -> Self {
-        Self { time: 0.0, values: vec![0.0; 3 * joints], added: vec![0.0; joints] }
+        Self { time: 0.0, values: vec![0.0; 3 * joints] }
     }
 
     /// Takes the time and the values of another one.
     pub fn copy(&mut self, other: &Self) {
         self.time = other.time;
         self.values.copy_from_slice(&other.values);
-        self.added.copy_from_slice(&other.added);
     }
 
     /// Returns the measured state, 2n.

@@ -115,6 +115,18 @@ impl Robot {
         robot
     }
 
+    /// Returns the robot without the inertia of its motors, which torques behind the gears do not
+    /// drive.
+    #[must_use]
+    pub fn without_motors(&self) -> Self {
+        let mut robot = self.clone();
+        for joint in &mut robot.description.joints {
+            (joint.armature, joint.rotor_inertia) = (None, None);
+        }
+        robot.joints.iter_mut().for_each(|joint| joint.armature = 0.0);
+        robot
+    }
+
     /// Returns the fixed geometry between the joints, n, from base to tip.
     pub fn geometry(&self) -> Vec<JointGeometry> {
         let convention = self.description.convention;

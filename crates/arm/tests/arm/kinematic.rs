@@ -1,12 +1,12 @@
-//! Models that know neither the robot nor its torque.
+//! Models that know neither the robot nor its torque, and models without motors.
 
-use crate::common::{grid, setup};
+use crate::common::{bent, grid, setup};
 use reachtube_arm::{ArmModel, Equations};
 use reachtube_conform::monitor::{Monitor, Schedule};
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::{Answer, CheckJob, Job, Noise, Silent};
-use reachtube_recordings::{MemoryRuns, Run};
-use reachtube_robot::Robot;
+use reachtube_recordings::{MemoryRuns, Run, Torque};
+use reachtube_robot::{JointDescription, Robot};
 
 /// Six joints from the same start; the acceleration of all of them is what `motion` says at a time:
 /// the distance that it leads to, and the velocity.
@@ -91,4 +91,44 @@ fn a_monitor_needs_a_start_without_acceleration() {
     monitor(Equations::Velocity).unwrap();
     let refused = monitor(Equations::Held).unwrap_err().to_string();
     assert!(refused.contains("acceleration at the start"), "{refused}");
+}
+
+/// Two joints under torques that are measured behind the gears, moved by no law at all.
+fn behind_the_gears(change: impl Fn(&mut JointDescription)) -> Answer {
+    let mut description = bent().description().clone();
+    description.joints.iter_mut().for_each(change);
+    let robot = Robot::from_description(&description).unwrap();
+    let times = grid(0.004, 60);
+    let mut runs = MemoryRuns::default();
+    for (name, pace) in [("slow", 3.0), ("fast", 4.0)] {
+        let state = |t: &f64| {
+            let (sin, cos) = (pace * t).sin_cos();
+            [0.3 * sin, 0.2 * cos, 0.3 * pace * cos, -0.2 * pace * sin]
+        };
+        let states = times.iter().flat_map(state).collect();
+        let torque = |t: &f64| [4.0 * (pace * t).cos(), 1.0 - pace * t];
+        let torques = times.iter().flat_map(torque).collect();
+        let run = Run::new(2, times.clone(), states, torques).unwrap();
+        runs.push(name, Some(name), Some(name), run);
+    }
+    let setup = setup(&robot, |arm, _| {
+        (arm.torque, arm.equations) = (Torque::Link, Equations::Robot);
+    });
+    Job::new(setup, runs).run(&Silent).unwrap()
+}
+
+#[test]
+fn motors_behind_the_gears_change_no_digit_of_the_sets() {
+    let sets = |change: fn(&mut JointDescription)| {
+        let model = behind_the_gears(change).model;
+        (model.initial_set, model.input_set, model.settings)
+    };
+    let without = sets(|joint| joint.armature = None);
+    assert_eq!(sets(|joint| joint.armature = Some(20.0)), without);
+    assert_eq!(sets(|joint| joint.armature = Some(0.3)), without);
+    let geared = sets(|joint| {
+        (joint.armature, joint.gear_ratio) = (None, Some(160.0));
+        joint.rotor_inertia = Some(1e-3);
+    });
+    assert_eq!(geared, without);
 }

@@ -60,7 +60,7 @@ fn replay(monitor: &mut Monitor, run: &Run) -> Vec<Leave> {
     for (k, &time) in run.times.iter().enumerate() {
         all.extend_from_slice(monitor.push(time, run.q(k), run.qd(k), run.torque(k)).unwrap());
     }
-    all.extend_from_slice(monitor.finish());
+    monitor.finish();
     all
 }
 
@@ -105,7 +105,6 @@ fn the_rows_are_those_of_a_check_whatever_the_input_is() {
     let models = [
         model(of(Torque::Compensated), None),
         model(of(Torque::Motor), None),
-        // Torques behind the gear need velocities of later samples.
         model(of(Torque::Link), None),
         model(of(Torque::Compensated), Some(correction)),
         model(by_robot, None),
@@ -123,7 +122,7 @@ fn windows_overlap_and_each_says_first_that_it_is_left() {
     let model = model(setup(&robot, |_, _| ()), None);
     let schedule = Schedule { every: 0.05, ..Schedule::with_horizon(0.2, STEP) };
     let mut monitor = monitor_of(&model, schedule).unwrap();
-    assert_eq!((monitor.horizon(), monitor.delay()), (0.2, 0.0));
+    assert_eq!(monitor.horizon(), 0.2);
     let run = &faulty(&robot, 81)[0];
     let leaves = replay(&mut monitor, run);
     // Windows begin at samples 0, 5, ..., 80; the last that ends began at 60.

@@ -63,12 +63,12 @@ pub trait Drive: Debug + Send + Sync {
     /// again.
     fn input_key(&self, at: Option<&Condition>) -> String;
 
-    /// Returns what evaluates the inputs of samples that are `step` \[s\] apart.
+    /// Returns what evaluates the inputs of samples.
     ///
     /// # Errors
     ///
     /// Inputs that samples alone do not give.
-    fn live_input(&self, step: f64) -> Result<Box<dyn LiveInput>>;
+    fn live_input(&self) -> Result<Box<dyn LiveInput>>;
 
     /// Returns what the numbers of the model are.
     fn signals(&self) -> &Signals;

@@ -56,7 +56,8 @@ struct Judge {
     windows: Vec<Window>,
     /// Number of samples since the beginning.
     count: u64,
-    /// The input of the sample before, n.
+    /// The input of the sample, m, and of the one before.
+    input: Vec<f64>,
     before: Vec<f64>,
     leaves: Vec<Leave>,
     /// What else tells faults, and the alarms of the samples that were taken last.
@@ -112,7 +113,7 @@ impl Monitor {
         let input_gains = settings.disturbance.input_gains(&propagation);
         let grid = Grid { times: Arc::new(times), propagation, input_gains };
         let sets = Sets::new(grid, model.sets(), settings.states.rows(2 * n));
-        let input = setup.drive.live_input(step)?;
+        let input = setup.drive.live_input()?;
         let windows = vec![Window::new(n); steps / every + 1];
         // Samples at even times that one sample may complete.
         let at_once = (schedule.longest_gap / step).ceil() as usize + 1;
@@ -121,6 +122,7 @@ impl Monitor {
             every: every as u64,
             windows,
             count: 0,
+            input: vec![0.0; n],
             before: vec![0.0; n],
             leaves: Vec::new(),
             faults: None,
@@ -151,27 +153,22 @@ impl Monitor {
         judge.leaves.clear();
         judge.alarms.clear();
         while let Some(sample) = even.next() {
-            input.take(sample);
-            while input.next(false, &mut |sample, u| judge.take(sample, u)) {}
+            input.evaluate(sample, &mut judge.input);
+            judge.take(sample);
         }
         Ok(&self.judge.leaves)
     }
 
-    /// Judges the samples that wait for later ones, as at the end of a recording, and begins anew:
-    /// the next sample may have any time. The totals stay.
-    pub fn finish(&mut self) -> &[Leave] {
-        let Self { even, input, judge, .. } = self;
+    /// Begins anew, as at the end of a recording: the next sample may have any time. The totals
+    /// stay.
+    pub fn finish(&mut self) {
+        let Self { even, judge, .. } = self;
         judge.leaves.clear();
         judge.alarms.clear();
-        judge.leaves.reserve(input.waiting() * judge.most_at_once());
-        judge.alarms.reserve(input.waiting() * (2 * judge.before.len() + 1));
-        while input.next(true, &mut |sample, u| judge.take(sample, u)) {}
-        input.clear();
         even.clear();
         judge.count = 0;
         judge.faults.iter_mut().for_each(FaultWatch::clear);
         judge.windows.iter_mut().for_each(|window| window.sample = None);
-        &self.judge.leaves
     }
 
     /// Compares motion with healthy motion, too, from now on: see [`alarms`](Self::alarms).
@@ -185,8 +182,7 @@ impl Monitor {
         self.begin_task(healthy.shape.clone(), Task::Watch { ranges, outside })
     }
 
-    /// Returns what the samples that were pushed last, or a finish, show to be unlike healthy
-    /// motion; nothing unless [`watch`](Self::watch) was called. Each alarm is raised once, when
+    /// Returns what the samples that were pushed last show to be unlike healthy motion; nothing unless [`watch`](Self::watch) was called. Each alarm is raised once, when
     /// a number leaves its range.
     #[must_use]
     pub fn alarms(&self) -> &[Alarm] {
@@ -248,13 +244,6 @@ impl Monitor {
         &self.judge.progress.drift
     }
 
-    /// Returns the time by which answers are late, s: torques behind the gear need the velocities
-    /// of later samples, from which the motors' inertia is computed.
-    #[must_use]
-    pub fn delay(&self) -> f64 {
-        self.input.delay()
-    }
-
     /// Returns the time from the beginning of one window to the beginning of the next, s.
     #[must_use]
     pub fn every(&self) -> f64 {
@@ -275,8 +264,8 @@ impl Judge {
         self.sets.rows * self.windows.len()
     }
 
-    /// Judges a sample whose input is `u` (m).
-    fn take(&mut self, sample: &Sample, u: &[f64]) {
+    /// Judges a sample, whose input was evaluated.
+    fn take(&mut self, sample: &Sample) {
         let Self { sets, nominal, windows, before, leaves, progress, .. } = self;
         for window in windows.iter_mut() {
             window.advance(sets, nominal.as_mut(), before);
@@ -300,7 +289,7 @@ impl Judge {
                 window.sample = None;
             }
         }
-        self.before.copy_from_slice(u);
+        self.before.copy_from_slice(&self.input);
         if let Some(faults) = &mut self.faults {
             let Self { alarms, before, progress, .. } = self;
             faults.take(sample, before, |alarm| {

@@ -48,9 +48,7 @@ impl LiveLog {
         let differentiates = velocity == VelocitySource::Differentiated;
         let filter = match (torque, cut_off) {
             (Torque::Compensated, _) | (_, None) => None,
-            (_, Some(cut_off)) => {
-                Some(LiveFilter::new(robot, *torque, *cut_off, step, differentiates)?)
-            }
+            (_, Some(cut_off)) => Some(LiveFilter::new(robot, *cut_off, step, differentiates)?),
         };
         let gains = gain_of_each_joint(gains, n)?;
         let even = EvenSamples::new(n, step, longest_gap);
@@ -148,14 +146,11 @@ struct LiveFilter {
     robot: Robot,
     step: f64,
     weights: Vec<f64>,
-    /// The weights of the filtered signal's derivative, where velocities or accelerations need it,
-    /// and of its second derivative.
-    slopes: [Vec<f64>; 2],
+    /// The weights of the filtered signal's derivative, where velocities need it.
+    slope: Vec<f64>,
     differentiates: bool,
-    /// The motors' inertia, which torques from behind the gear do not contain.
-    inertia: Option<Vec<f64>>,
     raw: Rows,
-    /// The filtered sample with its acceleration, 4n.
+    /// The filtered sample, 3n.
     filtered: Rows,
     off: Rows,
     row: Vec<f64>,
@@ -167,13 +162,7 @@ struct LiveFilter {
 }
 
 impl LiveFilter {
-    fn new(
-        robot: &Robot,
-        torque: Torque,
-        cut_off: f64,
-        step: f64,
-        differentiates: bool,
-    ) -> Result<Self> {
+    fn new(robot: &Robot, cut_off: f64, step: f64, differentiates: bool) -> Result<Self> {
         let rate = step.recip();
         let low_pass = LowPass::new(cut_off, rate).ok_or_else(|| Error::SampledTooSlowly {
             log: "the samples".into(),
@@ -184,20 +173,17 @@ impl LiveFilter {
         let robot = if robot.warms_by().is_empty() { robot.clone() } else { robot.at_run(1.0) };
         let n = robot.joint_count();
         let weights = low_pass.weights(PERIODS);
-        let first = convolved(&weights, step);
-        let slopes = [first.clone(), convolved(&first, step)];
-        let inertia: Vec<f64> = robot.joints().iter().map(|joint| joint.armature).collect();
+        let slope = convolved(&weights, step);
         let zeros = || vec![0.0; n];
         Ok(Self {
             step,
-            raw: Rows::new(3 * n, slopes[1].len()),
-            filtered: Rows::new(4 * n, weights.len() / 2 + 1),
+            raw: Rows::new(3 * n, slope.len()),
+            filtered: Rows::new(3 * n, weights.len() / 2 + 1),
             off: Rows::new(n, weights.len()),
             weights,
-            slopes,
+            slope,
             differentiates,
-            inertia: (torque == Torque::Link).then_some(inertia),
-            row: vec![0.0; 4 * n],
+            row: vec![0.0; 3 * n],
             taken_off: zeros(),
             workspace: Workspace::new(&robot),
             sin: zeros(),
@@ -208,7 +194,7 @@ impl LiveFilter {
     }
 
     fn delay(&self) -> f64 {
-        (self.slopes[1].len() / 2 + self.weights.len() / 2) as f64 * self.step
+        (self.slope.len() / 2 + self.weights.len() / 2) as f64 * self.step
     }
 
     fn clear(&mut self) {
@@ -223,14 +209,10 @@ impl LiveFilter {
             return false;
         }
         // Filtered signals, and derivatives of them.
-        let (signals, rates) = self.row.split_at_mut(3 * n);
+        let signals = &mut self.row[..];
         self.raw.weighed(0, &self.weights, signals);
         if self.differentiates {
-            self.raw.weighed(0, &self.slopes[0], &mut signals[n..2 * n]);
-        }
-        if self.inertia.is_some() {
-            let (from, order) = if self.differentiates { (0, 1) } else { (n, 0) };
-            self.raw.weighed(from, &self.slopes[order], rates);
+            self.raw.weighed(0, &self.slope, &mut signals[n..2 * n]);
         }
         self.filtered.take(&self.row);
         self.take_off();
@@ -240,12 +222,10 @@ impl LiveFilter {
         }
         // The sample in the middle of what is subtracted.
         self.off.weighed(0, &self.weights, &mut self.taken_off);
-        let Some(row) = self.filtered.all().map(|rows| &rows[..4 * n]) else { return false };
-        sample.values.copy_from_slice(&row[..3 * n]);
+        let Some(row) = self.filtered.all().map(|rows| &rows[..3 * n]) else { return false };
+        sample.values.copy_from_slice(row);
         for (joint, torque) in sample.values[2 * n..].iter_mut().enumerate() {
             *torque -= self.taken_off[joint];
-            let inertia = self.inertia.as_ref().map_or(0.0, |inertia| inertia[joint]);
-            *torque += inertia * row[3 * n + joint];
         }
         sample.time -= self.delay();
         true

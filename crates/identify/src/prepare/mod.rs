@@ -15,7 +15,6 @@ mod lag;
 mod live;
 pub(crate) mod log;
 mod low_pass;
-mod motors;
 mod noise;
 mod past;
 pub(crate) mod prepared;

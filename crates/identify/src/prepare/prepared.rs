@@ -3,13 +3,12 @@ use crate::prepare::changes::{LogChange, described};
 use crate::prepare::derivative::derivative;
 use crate::prepare::log::PreparedLog;
 use crate::prepare::low_pass::{LowPass, TRANSIENT_PERIODS};
-use crate::prepare::motors::add_motor_inertia;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource, gain_of_each_joint};
 use crate::prepare::signals::{Signals, set_column, without_motion};
 use rayon::prelude::*;
-use reachtube_recordings::{Run, Torque};
+use reachtube_recordings::Run;
 use reachtube_robot::friction::Coulomb;
 use reachtube_robot::{Joint, Robot};
 
@@ -40,8 +39,7 @@ pub struct Prepared {
 /// input u of (11). Near standstill, friction holds a joint ([`Robot::input_from_holding_torque`]).
 /// What is subtracted is filtered as the torques are: where a joint turns, friction steps, and the
 /// filtered torque does not. An input that is computed from filtered torques misses up to twice the
-/// friction about every turn. To torques that were measured behind the gear, what the motors'
-/// inertia takes is added ([`PrepareSettings::torque`]).
+/// friction about every turn.
 ///
 /// # Errors
 ///
@@ -62,15 +60,6 @@ pub fn prepare(
     let mut changes =
         described(logs.iter().map(PreparedLog::len).sum(), &changes, settings, cut_off);
     changes.extend(compensated.map(compensation));
-    let adds_inertia = |robot: &&Robot| {
-        settings.torque == Some(Torque::Link)
-            && robot.joints().iter().any(|joint| joint.armature > 0.0)
-    };
-    changes.extend(compensated.filter(adds_inertia).map(|_| {
-        "added J times the measured acceleration, the torque that accelerates the motors, which \
-            the sensors do not measure"
-            .to_string()
-    }));
     Ok(Prepared { logs, cut_off, changes })
 }
 
@@ -165,9 +154,6 @@ pub(crate) fn prepare_one(
     log.before = signals.before(0.5 / cut_off, differentiated);
     if let Some(robot) = compensated {
         signals.compensate(&mut log, robot);
-        if settings.torque == Some(Torque::Link) {
-            add_motor_inertia(&mut log, robot);
-        }
     }
     // Ends without the filter's extrapolation.
     let end = (TRANSIENT_PERIODS / (cut_off * step)).ceil() as usize;

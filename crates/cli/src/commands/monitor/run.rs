@@ -51,9 +51,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let outcome = match &mut watch.monitor {
         None => Outcome::Done,
         Some(monitor) => {
-            let left = monitor.finish().to_vec();
-            watch.events.left(&left)?;
-            watch.events.alarms(monitor.alarms())?;
+            monitor.finish();
             let words = ended.as_ref().copied().unwrap_or("error");
             watch.events.summary(monitor.found(), words)?;
             let totals = monitor.found().totals();
@@ -184,8 +182,8 @@ impl Watch<'_> {
         ));
         if monitor.delay() > 0.0 {
             output::note(&format!(
-                "answers come {:.3} s late: the model's recordings were filtered, or their \
-                 accelerations used, with samples from after each one",
+                "answers come {:.3} s late: the model's recordings were filtered with samples from \
+                 after each one",
                 monitor.delay()
             ));
         }
