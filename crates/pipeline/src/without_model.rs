@@ -5,6 +5,8 @@
 //! both can be compared: each with the factor by which the sets of the others have to grow for the
 //! motion that leaves them furthest.
 
+use std::collections::BTreeMap;
+
 use reachtube_arm::{ArmModel, Equations};
 use reachtube_conform::{Answer, CheckJob, Silent};
 use reachtube_finding::Table;
@@ -217,21 +219,71 @@ fn by_speed(recordings: &Prepared) -> [Vec<PreparedLog>; 2] {
         let rows = log.qdd.chunks_exact(n).flat_map(|row| row.iter().zip(&scales));
         rows.map(|(qdd, scale)| qdd.abs() / scale).fold(0.0, f64::max)
     };
-    let mut motions: Vec<(&str, f64)> = Vec::new();
-    for log in recordings.logs {
-        let motion = recordings.motion(&log.name);
-        match motions.iter_mut().find(|(name, _)| *name == motion) {
-            Some((_, fastest)) => *fastest = fastest.max(peak(log)),
-            None => motions.push((motion, peak(log))),
-        }
-    }
-    if motions.len() < 2 {
+    let logs = recordings.logs.iter().map(|log| (recordings.motion(&log.name), peak(log)));
+    let slow = slower_half(logs);
+    if slow.is_empty() {
         return Default::default();
     }
-    motions.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let slow = &motions[..motions.len() / 2];
-    let is_slow =
-        |log: &&PreparedLog| slow.iter().any(|(name, _)| *name == recordings.motion(&log.name));
+    let is_slow = |log: &&PreparedLog| slow.contains(&recordings.motion(&log.name));
     let (slower, faster) = recordings.logs.iter().partition::<Vec<&PreparedLog>, _>(is_slow);
     [slower, faster].map(|logs| logs.into_iter().cloned().collect())
+}
+
+/// Returns the slower half of the motions of some logs, each with the speed of a log.
+fn slower_half<'a>(logs: impl Iterator<Item = (&'a str, f64)>) -> Vec<&'a str> {
+    let mut motions: BTreeMap<&str, f64> = BTreeMap::new();
+    for (motion, speed) in logs {
+        let fastest = motions.entry(motion).or_insert(speed);
+        *fastest = fastest.max(speed);
+    }
+    let mut motions: Vec<(&str, f64)> = motions.into_iter().collect();
+    motions.sort_by(|a, b| a.1.total_cmp(&b.1));
+    motions.iter().take(motions.len() / 2).map(|(motion, _)| *motion).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn compared(narrower: Vec<f64>, faster: Option<[f64; 2]>) -> WithoutModel {
+        let (widest, widest_of_model) = (Some(0.9), Some(0.3));
+        WithoutModel { equations: Equations::Held, widest, widest_of_model, narrower, faster }
+    }
+
+    #[test]
+    fn a_model_is_worth_having_where_it_beats_none() {
+        let better = compared(vec![4.0, 1.0], Some([0.01, 0.2]));
+        assert!(better.is_model_better());
+        assert_eq!(
+            better.words(),
+            "sets 2 times as wide (acceleration of the start held), the widest 90 % (with it: 30 \
+             %), 20 % of faster motions outside (with it: 1 %)"
+        );
+        let wider = compared(vec![0.5, 1.9], None);
+        assert!(!wider.is_model_better() && wider.why_better().contains("no wider (0.97 times"));
+        let slower = compared(vec![2.0, 2.0], Some([0.4, 0.1]));
+        assert!(!slower.is_model_better());
+        assert!(slower.why_better().starts_with("of faster motions 40 % of the rows leave"));
+        // Neither foretells anything.
+        assert!(!compared(vec![f64::NAN], None).is_model_better());
+    }
+
+    #[test]
+    fn widths_have_the_factor_of_motions_that_were_left_out() {
+        let foretold = |half_width, factor| Foretold {
+            half_widths: vec![half_width, 0.1],
+            displacements: vec![2.0, 1.0],
+            factor,
+        };
+        assert_eq!(foretold(0.4, 1.5).widest(), 0.30000000000000004);
+        assert_eq!(foretold(0.1, 2.0).widest(), 0.2);
+        assert_eq!(foretold(0.1, f64::INFINITY).widest(), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_slower_half_of_the_motions_has_the_smaller_accelerations() {
+        let logs = [("a", 3.0), ("b", 1.0), ("c", 2.0), ("d", 9.0), ("b", 1.5), ("a", 1.0)];
+        assert_eq!(slower_half(logs.into_iter()), ["b", "c"]);
+        assert!(slower_half(logs.into_iter().take(1)).is_empty());
+    }
 }
