@@ -14,6 +14,9 @@ use crate::error::{Error, Result};
 /// What the comment with the digest of the values begins with.
 const DIGEST: &str = "the reasons belong to the values with the digest ";
 
+/// What the comment begins with that has the digests of an allowance, and of the other values.
+const FOLLOWS: &str = "the allowance, and what it follows from: ";
+
 /// Half a joint's set by the joint's displacement that is accepted by default.
 pub(crate) const LARGEST_RATIO: f64 = 0.5;
 
@@ -116,15 +119,23 @@ pub struct Choice {
 
 impl Choices {
     /// Reads choices and the reasons in the comments before them. Reasons of a value that was
-    /// edited are dropped, because they may refer to the previous value.
+    /// edited are dropped, because they may refer to the previous value. So is an allowance that
+    /// was found for other values.
     ///
     /// # Errors
     ///
     /// Text that is not TOML, and keys that do not exist, with line and column.
     pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
         let mut choices: Self = toml::from_str(text)?;
-        let digest = text.lines().find_map(|line| line.strip_prefix("# ")?.strip_prefix(DIGEST));
-        if digest != Some(choices.digest().as_str()) {
+        let comment = |begin: &str| {
+            text.lines().find_map(|line| Some(line.strip_prefix("# ")?.strip_prefix(begin)?.trim()))
+        };
+        if comment(DIGEST) != Some(choices.digest().as_str()) {
+            let [allowance, others] = choices.following();
+            let known = comment(FOLLOWS).and_then(|line| line.split_once(' '));
+            if known.is_some_and(|known| known.0 == allowance && known.1 != others) {
+                choices.allowance = None;
+            }
             return Ok(choices);
         }
         let mut reason: Vec<&str> = Vec::new();
@@ -212,9 +223,22 @@ impl Choices {
             reasons: self.reasons,
         };
         if choices != before {
+            // An allowance was found for the values before.
+            let is_given = before.reasons.get("allowance").is_none_or(|reason| reason == "given");
+            if !is_given && choices.allowance == before.allowance {
+                choices.allowance = None;
+            }
             choices.reasons.clear();
         }
         choices
+    }
+
+    /// Returns the digests of the allowance, and of the values that it follows from.
+    fn following(&self) -> [String; 2] {
+        let (allowance, reasons) = (self.allowance.clone(), BTreeMap::new());
+        let own = Self { allowance, ..Self::default() };
+        let others = Self { allowance: None, reasons, ..self.clone() };
+        [own.digest(), others.digest()]
     }
 
     /// Returns how recordings are read and prepared, but for the cut-off.
@@ -242,7 +266,8 @@ impl Choices {
             text += line;
             text.push('\n');
         }
-        text + &format!("\n# {DIGEST}{}\n", self.digest())
+        let [allowance, others] = self.following();
+        text + &format!("\n# {DIGEST}{}\n# {FOLLOWS}{allowance} {others}\n", self.digest())
     }
 
     fn values(&self) -> String {
@@ -302,6 +327,21 @@ mod tests {
         assert_eq!(replaced, Choices { horizon: Some(0.5), ..choices.clone() });
         let same = Choices::from_toml(&text).unwrap().replaced_by(Choices::default());
         assert_eq!(same.reasons.len(), 1);
+        // An allowance follows from the other values, and goes with them unless it was given.
+        let with = Choices { allowance: Some(vec![0.5; 6]), ..choices.clone() };
+        let made = |reason: &str| {
+            let (value, reason) = (String::new(), reason.into());
+            with.to_toml(&[Choice { key: "allowance", value, reason }])
+        };
+        let edited = Choices::from_toml(&made("found").replace("-1.2", "-1.3")).unwrap();
+        assert_eq!(edited.allowance, None);
+        let edited = made("found").replace("-1.2", "-1.3").replace("[0.5, ", "[0.6, ");
+        assert_eq!(Choices::from_toml(&edited).unwrap().allowance.unwrap()[0], 0.6);
+        for (reason, kept) in [("found", false), ("given", true)] {
+            let longer = Choices { horizon: Some(0.5), ..Choices::default() };
+            let replaced = Choices::from_toml(&made(reason)).unwrap().replaced_by(longer);
+            assert_eq!(replaced.allowance.is_some(), kept, "{reason}");
+        }
         // The reasons of an edited file may be about other values.
         let edited = Choices::from_toml(&text.replace("-1.2", "-1.3")).unwrap();
         assert!(edited.reasons.is_empty());
