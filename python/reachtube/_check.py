@@ -32,7 +32,7 @@ class Check(Record):
 
     @property
     def worst(self) -> dict[str, Any] | None:
-        """The value furthest outside: suite, run, time, joint, state, side and excess."""
+        """The value furthest outside: suite, run, time, part, state, side and excess."""
         worst = self._content["violations"]["worst"]
         return None if worst is None else dict(worst)
 

@@ -28,8 +28,8 @@ class Leave:
     """Time of the sample, s."""
     window: float
     """Time of the window's first sample, s."""
-    joint: int
-    """The joint, from 1."""
+    part: int
+    """The part of the system, such as a joint, from 1."""
     state: str
     """The state, such as ``q1`` or ``qd1``."""
     side: Literal["upper", "lower"]
@@ -54,8 +54,8 @@ class Alarm:
     """Time of the sample, s."""
     fault: Literal["push", "drag", "payload"]
     """What changed: a sudden torque, the friction of a joint, or the mass at the tip."""
-    joint: int | None
-    """The joint, from 1; ``None`` for the payload."""
+    part: int | None
+    """The part of the system, such as a joint, from 1; ``None`` for the payload."""
     value: float
     """The number, N m or kg."""
     low: float

@@ -14,10 +14,10 @@ use crate::failure::{Failure, Result};
 use crate::findings::list;
 use crate::recordings::NativeSource;
 
-/// Time, window, joint, state, side, value, excess, radius, proved, first.
+/// Time, window, part, state, side, value, excess, radius, proved, first.
 type Left = (f64, f64, usize, String, &'static str, f64, f64, f64, bool, bool);
 
-/// Time, fault, joint, value, and the least and the largest value without an alarm.
+/// Time, fault, part, value, and the least and the largest value without an alarm.
 type Alarmed = (f64, &'static str, Option<usize>, f64, f64, f64);
 
 /// A monitor of a model.
@@ -157,20 +157,20 @@ impl NativeMonitor {
 }
 
 fn alarm_of(alarm: &Alarm) -> Alarmed {
-    let Alarm { time, fault, joint, value, range: [low, high] } = *alarm;
+    let Alarm { time, fault, part, value, range: [low, high] } = *alarm;
     let fault = match fault {
         Fault::Push => "push",
         Fault::Drag => "drag",
         Fault::Payload => "payload",
     };
-    (time, fault, joint, value, low, high)
+    (time, fault, part, value, low, high)
 }
 
 fn left_of(leave: &Leave) -> Left {
-    let Leave { time, window, joint, state, side, value, excess, radius, proved, first } = *leave;
+    let Leave { time, window, part, state, side, value, excess, radius, proved, first } = *leave;
     let side = match side {
         Side::Upper => "upper",
         Side::Lower => "lower",
     };
-    (time, window, joint, state.to_string(), side, value, excess, radius, proved, first)
+    (time, window, part, state.to_string(), side, value, excess, radius, proved, first)
 }

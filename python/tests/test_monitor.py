@@ -85,7 +85,7 @@ def test_healthy_recordings_calibrate_alarms(model: rt.Model, robot: rt.Robot) -
     pushed[40:, 1] += 30.0
     watch.push(first.t, first.q, first.qd, pushed)
     alarm = watch.alarms[0]
-    assert (alarm.fault, alarm.joint) == ("push", 2) and first.t[40] <= alarm.time
+    assert (alarm.fault, alarm.part) == ("push", 2) and first.t[40] <= alarm.time
     assert not alarm.low <= alarm.value <= alarm.high
     assert rt.monitor(model, step=0.004, horizon=0.1).alarm_bound is None
     with pytest.raises(rt.ReachtubeError, match="healthy motion needs at least 2 recordings"):

@@ -125,5 +125,5 @@ def test_a_monitor_has_findings(model: rt.Model, robot: rt.Robot) -> None:
     assert [finding.code for finding in watch.findings] == ["never-left"]
     left = watch.push(run.t, run.q, run.qd, run.tau + 5.0)
     assert left and [finding.code for finding in watch.findings] == ["left-set", "left-set"]
-    assert watch.findings[1].place == f"joint{left[0].joint}"
+    assert watch.findings[1].place == f"joint{left[0].part}"
     assert "left its set" in str(watch.findings[1])

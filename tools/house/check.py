@@ -6,8 +6,8 @@
     tools/house/check.py --write              lower the ceilings in ceilings.toml
 
 Fails on files of one crate or of the Python package that import each other in a circle, on
-functions of more than 60 lines, on Rust or Python files of more than 400 lines, and on sizes above
-their ceiling.
+functions of more than 60 lines, on Rust or Python files of more than 400 lines, on sizes above
+their ceiling, and on `conform` where it speaks of joints: it knows the parts of any system.
 
 Public items are those declared `pub`, functions of types among them; the compiler refuses `pub` for
 what cannot be reached from outside its crate. A `pub use` gives an item another path and is no
@@ -32,6 +32,7 @@ LONGEST_FILE = 400
 
 PUBLIC = re.compile(r"^\s*pub (?:fn|struct|enum|trait|const|static|type|mod)\b", re.MULTILINE)
 EXPORT = re.compile(r"^pub (?:const fn|fn|struct|enum|trait|const|static|type|mod) (\w+)", re.M)
+JOINT = re.compile(r"(?<!dis)joint", re.IGNORECASE)
 TYPE = re.compile(r"^\s*(?:pub(?:\([^)]*\))? )?(?:struct|enum|trait) (\w+)", re.M)
 COLUMNS = "crate lines types twice public exports needs circles functions median longest".split()
 
@@ -61,8 +62,9 @@ def main(arguments):
     modules_of = crates | {package: python.package(package)}
     faults = [fault for item in modules_of.items() for fault in circles_of(*item)]
     faults += [fault for modules in crates.values() for fault in long_functions(root, modules)]
-    faults += [*long_files(root), *ceilings.faults(ceilings.read(file), sizes)]
-    print("\n".join(faults) or "No circle of imports, nothing too long, no size above its ceiling.")
+    faults += [*long_files(root), *joints(root), *ceilings.faults(ceilings.read(file), sizes)]
+    print("\n".join(faults) or "No circle of imports, nothing too long, no joint in `conform`, no "
+                               "size above its ceiling.")
     return 1 if faults else 0
 
 
@@ -121,6 +123,15 @@ def long_files(root):
         lines = (root / file).read_text().count("\n")
         if lines > LONGEST_FILE:
             yield f"{file}: {lines} lines, more than {LONGEST_FILE}; does it hold two concepts?"
+
+
+def joints(root):
+    """Yields the lines of `conform` that know joints."""
+    for file in sorted((root / "crates/conform/src").rglob("*.rs")):
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            if JOINT.search(line):
+                yield f"{file.relative_to(root)}:{number}: `conform` knows parts and no joints; " \
+                      "take the word from `Signals::noun`, or move the code to `arm`"
 
 
 def size(folder, modules, twice):

@@ -93,6 +93,18 @@ class Ceilings(unittest.TestCase):
         self.assertEqual(list(twice), ["A"])
 
 
+class Joints(unittest.TestCase):
+    def test_conform_knows_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            text = "let shares = !a.is_disjoint(&b);\n/// The joint.\npub fn part() {}\n"
+            for crate in ("conform", "arm"):
+                file = Path(folder, "crates", crate, "src/a.rs")
+                file.parent.mkdir(parents=True)
+                file.write_text(text)
+            fault, = check.joints(Path(folder))
+        self.assertTrue(fault.startswith("crates/conform/src/a.rs:2: "))
+
+
 class Functions(unittest.TestCase):
     def test_lengths_count_from_fn_to_the_closing_brace(self):
         text = rust.code("trait T { fn a(); }\nfn b<'a>(c: char) -> [u8; 2]\nwhere\n"

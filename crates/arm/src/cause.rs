@@ -1,5 +1,5 @@
-use reachtube_conform::plausibility::Warning;
-use reachtube_finding::Remedy;
+use reachtube_conform::Code;
+use reachtube_finding::{Finding, Remedy, Severity};
 use reachtube_recordings::Torque;
 
 /// The horizon that is proposed for long recordings, s.
@@ -62,7 +62,7 @@ pub(super) enum Cause {
 
 impl Cause {
     /// Reports the most likely cause of other warnings.
-    pub(super) fn warning(&self) -> Warning {
+    pub(super) fn warning(&self) -> Finding {
         let remedy;
         let text = match self {
             Self::Reading { clause, kind, unexplained, as_stated } => {
@@ -105,7 +105,7 @@ impl Cause {
                 words
             }
         };
-        Warning::of_cause(text, remedy)
+        Finding::new(Severity::Warning, Code::Cause, text).remedied_by(remedy)
     }
 }
 
@@ -192,7 +192,7 @@ fn percent(part: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use reachtube_finding::{Finding, FrontEnd};
+    use reachtube_finding::FrontEnd;
 
     use super::*;
 
@@ -206,7 +206,7 @@ mod tests {
         let kind = Some(reachtube_recordings::Torque::Motor);
         let clause = "the torques are of the kind `motor`".into();
         let cause = Cause::Reading { clause, kind, unexplained: 0.07, as_stated: 3.0 };
-        let finding = Finding::from(&cause.warning());
+        let finding = cause.warning();
         let written = finding.written_for(FrontEnd::Python);
         assert!(written.contains("of the kind `motor`. So read, 7 % of"), "{written}");
         assert!(written.contains("and 100 % as stated. `torque=\"motor\"` reads"), "{written}");
@@ -214,7 +214,7 @@ mod tests {
 
     #[test]
     fn what_was_applied_is_not_proposed_again() {
-        let written = |cause: &Cause| Finding::from(&cause.warning()).to_string();
+        let written = |cause: &Cause| cause.warning().to_string();
         let long = written(&Cause::Horizon { unexplained: 0.1, longest: 31.2 });
         assert!(
             long.contains("last up to 31.2 s") && long.contains("`--horizon 0.5` cuts"),

@@ -1,7 +1,7 @@
 use reachtube_abstraction::ModelKind;
-use reachtube_conform::plausibility::Warning;
 use reachtube_conform::settings::Method;
 use reachtube_diagnose::{Change, Hypothesis, RobotMisfit, gains};
+use reachtube_finding::Finding;
 use reachtube_recordings::Run;
 use reachtube_robot::JointDescription;
 
@@ -28,8 +28,8 @@ pub(super) fn likely_cause(
     arm: &Arm,
     runs: Vec<Run>,
     method: Method,
-    held_out: Option<Warning>,
-) -> Option<Warning> {
+    held_out: Option<Finding>,
+) -> Option<Finding> {
     let misfit = RobotMisfit::new(arm.robot(), runs);
     let stated = Change::none(arm.settings.torque, arm.robot().joint_count());
     let Some((rest, reading)) = misfit.reading(&stated) else { return held_out };

@@ -9,9 +9,10 @@ use reachtube_conform::data::{
     Asked, Case, Compensation, Condition, Drive, DryFriction, Fits, LiveInput, Near, Parameters,
     Residual, RunInput, Signals,
 };
-use reachtube_conform::plausibility::{Remark, Warning, WarningKind};
+use reachtube_conform::plausibility::Remark;
 use reachtube_conform::settings::Method;
-use reachtube_conform::{Error, Group, Result, Setup};
+use reachtube_conform::{Code, Error, Group, Result, Setup};
+use reachtube_finding::Finding;
 use reachtube_reach::System;
 use reachtube_recordings::{Defect, Run, Torque};
 use reachtube_robot::friction::WarmingBy;
@@ -139,14 +140,14 @@ impl Drive for Arm {
 
     fn remark(
         &self,
-        kind: WarningKind,
+        code: Code,
         part: usize,
         recorded: &dyn Fn(usize) -> [f64; 2],
     ) -> Option<Remark> {
-        friction::remark(&self.robot, kind, part, recorded)
+        friction::remark(&self.robot, code, part, recorded)
     }
 
-    fn cause(&self, runs: Vec<Run>, method: Method, held_out: Option<Warning>) -> Option<Warning> {
+    fn cause(&self, runs: Vec<Run>, method: Method, held_out: Option<Finding>) -> Option<Finding> {
         likely_cause(self, runs, method, held_out)
     }
 

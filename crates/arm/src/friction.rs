@@ -1,6 +1,7 @@
 //! Friction at speeds that it was not fitted on.
 
-use reachtube_conform::plausibility::{Remark, WarningKind};
+use reachtube_conform::Code;
+use reachtube_conform::plausibility::Remark;
 use reachtube_robot::Robot;
 
 /// Speeds beyond the fitted ones by this part are remarked: filters differ.
@@ -9,19 +10,19 @@ const TOLERANCE: f64 = 0.02;
 /// Returns the remark of a kind about the friction of a joint (from 0), if there is one.
 pub(super) fn remark(
     robot: &Robot,
-    kind: WarningKind,
+    code: Code,
     joint: usize,
     recorded: &dyn Fn(usize) -> [f64; 2],
 ) -> Option<Remark> {
     let velocities = || recorded(robot.joint_count() + joint);
-    let (speed, limit) = match kind {
-        WarningKind::FrictionRange => beyond_fitted(robot, joint, velocities)?,
-        WarningKind::FallingFriction => falling(robot, joint, velocities)?,
+    let (speed, limit) = match code {
+        Code::FrictionRange => beyond_fitted(robot, joint, velocities)?,
+        Code::FallingFriction => falling(robot, joint, velocities)?,
         _ => return None,
     };
     let unit = robot.joints()[joint].kind.velocity_unit();
     let text = format!("joint {} {speed:.2} {unit}, {limit:.2}", joint + 1);
-    Some(Remark { kind, joint: joint + 1, text })
+    Some(Remark { code, part: joint + 1, text })
 }
 
 /// Returns the speed of a joint where the recordings are faster than the recordings that its

@@ -20,7 +20,7 @@ const MOST_SAMPLES: usize = 200;
 ///
 /// When the correction does not fit the robot.
 pub(super) fn of_case(arm: &Arm, case: &Case) -> Result<(Vec<f64>, usize)> {
-    let (robot, n, times) = (arm.robot(), case.joints(), case.grid.times());
+    let (robot, n, times) = (arm.robot(), case.parts(), case.grid.times());
     // The robot's own viscous friction is taken whole, whatever the order of the model.
     let mut correction = arm.correction.clone().unwrap_or_else(|| InputCorrection::none(n));
     correction.joints.iter_mut().for_each(|j| (j.quadratic, j.cubic) = (0.0, 0.0));

@@ -324,9 +324,9 @@ impl Parameters for ArmParameters {
             let kind = self.robot().joints()[joint].kind;
             let (identified, fitted, factor) = self.values(p, *number);
             let (name, unit) = quantity.name_and_unit(kind, self.temperatures.is_some());
-            let (group, joint, standard_error) =
+            let (group, part, standard_error) =
                 (quantity.group(), joint + 1, self.standard_error(p));
-            FittedParameter { group, name, joint, unit, identified, standard_error, fitted, factor }
+            FittedParameter { group, name, part, unit, identified, standard_error, fitted, factor }
         };
         numbers.iter().enumerate().map(of).collect()
     }

@@ -24,6 +24,7 @@ pub(crate) fn signals(robot: &Robot, equations: Equations) -> Signals {
         states: units.enumerate().map(state).collect(),
         inputs: (0..n).map(input).collect(),
         parts: (0..n).map(part).collect(),
+        noun: "joint".into(),
         nominal: nominal(equations).map(Into::into),
     }
 }

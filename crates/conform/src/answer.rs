@@ -57,7 +57,6 @@ impl Answer {
         Ok(Self { model: Self::model(&problem, &found, record), problem, found })
     }
 
-    /// Returns the model of what was found, with the record of a fit.
     fn model(problem: &Problem, found: &Conformance, record: Option<FitRecord>) -> Model {
         let model = Model::new(problem, found);
         match record {

@@ -62,8 +62,8 @@ pub struct Check {
 pub fn check(model: &Model, problem: &Problem, tube: &Tube) -> Result<Check> {
     let judged = judged(problem, tube)?;
     let tube = judged.as_ref().unwrap_or(tube);
-    let mut excess = vec![0.0f64; 2 * problem.joints()];
-    let mut worst: Vec<Option<Witness>> = vec![None; 2 * problem.joints()];
+    let mut excess = vec![0.0f64; problem.states()];
+    let mut worst: Vec<Option<Witness>> = vec![None; problem.states()];
     let verdict = Verdict::visiting(problem, tube, |row| {
         let largest = row.edges.iter().map(|edge| edge.excess).fold(0.0, f64::max);
         excess[row.state] = excess[row.state].max(largest);
@@ -98,7 +98,7 @@ impl Check {
             recordings.notes.iter().map(|note| findings::note(note)).collect();
         noted.extend(findings::at_rest(recordings));
         noted.extend(is_used.is_none().then(|| findings::use_unknown(model.data.are_listed())));
-        noted.extend(friction_warning(problem).as_ref().map(Finding::from));
+        noted.extend(friction_warning(problem));
         let starts_elsewhere =
             recordings.suites.iter().filter(|suite| !may_start_near(model, suite));
         let other = other.as_ref().map(findings::other_recordings);
@@ -121,7 +121,6 @@ impl Check {
         self.verdict.conformant
     }
 
-    /// Words the answer.
     fn with_findings(mut self, model: &Model) -> Self {
         let (verdict, signals) = (&self.verdict, &model.signals);
         let set = verdict.enclosure.set_name();
@@ -139,7 +138,11 @@ impl Check {
             Some(held_out) => findings::next_motion(held_out, set, "left it"),
             None => findings::fitted_to_these(),
         });
-        findings.extend(findings::reach_of_proof(verdict, model.settings.states));
+        findings.extend(findings::reach_of_proof(
+            verdict,
+            model.settings.states,
+            &model.signals.noun,
+        ));
         let is_noted =
             |found: &Finding| Code::of(&found.code).is_some_and(|code| NOTED.contains(&code));
         findings.extend(self.findings.into_iter().filter(is_noted));

@@ -18,7 +18,7 @@ use crate::next_motion::trends::{Trend, trends};
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
 use crate::nominal::input_error::InputError;
-use crate::plausibility::{NominalFit, Usefulness, Warning, warnings};
+use crate::plausibility::{NominalFit, Usefulness, warnings};
 use crate::program::program::Program;
 use crate::progress::Progress;
 use crate::reach::reach;
@@ -29,6 +29,7 @@ use crate::sets::UncertaintySets;
 use crate::stiction::{Stiction, stiction};
 use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
+use reachtube_finding::Finding;
 
 /// Largest number of times that U is widened for stiction, each time for the wider sets.
 const MOST_WIDENINGS: usize = 8;
@@ -71,9 +72,9 @@ pub struct Conformance {
     pub allowance_needed: Option<AllowanceNeeded>,
     /// The radii that were added to the smallest X0 and U, 3n; empty if none were.
     pub allowance: Vec<f64>,
-    /// The dry friction that U was widened for, joint by joint; empty without the setting.
+    /// The dry friction that U was widened for, part by part; empty without the setting.
     pub stiction: Vec<Stiction>,
-    /// The joints whose motion follows the order of the runs.
+    /// The parts whose motion follows the order of the runs.
     pub trends: Vec<Trend>,
     /// The search for the sets of a model that is not linear.
     pub search: Option<SearchSummary>,
@@ -81,8 +82,8 @@ pub struct Conformance {
     /// the model is not linear.
     pub tight: Vec<Witness>,
     /// Implausible results, and the most likely cause.
-    pub warnings: Vec<Warning>,
-    /// Width of the sets beside the motion of each joint.
+    pub warnings: Vec<Finding>,
+    /// Width of the sets beside the motion of each part.
     pub usefulness: Usefulness,
     /// The part of the variance of each state that the nominal motions explain, 2n; negative if
     /// they are further away than the mean, `None` if the state hardly moves.
@@ -126,10 +127,6 @@ pub fn conform(
 /// # Guarantee
 ///
 /// As [`conform`].
-///
-/// # Errors
-///
-/// As [`conform`].
 pub(crate) fn conform_fitted(
     problem: &Problem,
     left_out: Option<LeftOutMotions>,
@@ -165,7 +162,7 @@ fn judged(
     let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
     let LeftOutMotions { each: left_out, missing } = left_out;
     let mut tight = found.touching;
-    let mut radii = vec![0.0f64; 2 * problem.joints()];
+    let mut radii = vec![0.0f64; problem.states()];
     let verdict = Verdict::visiting(problem, &tube, |row| {
         radii[row.state] = radii[row.state].max(row.radius);
         let decide = row.edges.iter().filter(|edge| deciding.contains(row, edge));
@@ -215,12 +212,8 @@ impl Conformance {
     /// # Guarantee
     ///
     /// As [`conform`].
-    ///
-    /// # Errors
-    ///
-    /// As [`conform`]; an allowance that is not 3n radii.
     pub(crate) fn widened(self, problem: &Problem, allowance: Vec<f64>) -> Result<Self> {
-        check_allowance(&allowance, problem.joints())?;
+        check_allowance(&allowance, problem.inputs())?;
         let sets = self.sets.widened(&allowance);
         let allowance = match self.allowance.is_empty() {
             true => allowance,
@@ -236,8 +229,8 @@ impl Conformance {
         Ok(Self { allowance_needed, stiction, ..judged })
     }
 
-    /// Widens U by the dry friction that is possible where joints may come to rest, if the settings
-    /// select it, and proves the wider sets. They reach further, so that more joints may come to
+    /// Widens U by the dry friction that is possible where parts may come to rest, if the settings
+    /// select it, and proves the wider sets. They reach further, so that more parts may come to
     /// rest, and U is widened again until it covers these too. Wider sets hold every motion that
     /// the smallest ones hold, so that bounds for the next motion remain.
     ///
@@ -248,17 +241,17 @@ impl Conformance {
         if !problem.settings().stiction {
             return Ok(self);
         }
-        let (n, trust) = (problem.joints(), self.trust.clone());
+        let (n, trust) = (problem.inputs(), self.trust.clone());
         let mut found = self;
         for round in 0..=MOST_WIDENINGS {
             let reached = reach(problem, &found.tube)?;
             found.stiction = stiction(problem, &found.sets, &found.allowance, &reached);
-            let allowed = |joint: usize| found.allowance.get(2 * n + joint).copied().unwrap_or(0.0);
+            let allowed = |part: usize| found.allowance.get(2 * n + part).copied().unwrap_or(0.0);
             let mut more = vec![0.0; 3 * n];
             for rest in &found.stiction {
-                let joint = rest.joint - 1;
+                let part = rest.part - 1;
                 // A little more than is needed, since wider sets need a little more.
-                more[2 * n + joint] = match allowed(joint) {
+                more[2 * n + part] = match allowed(part) {
                     allowed if rest.torque <= allowed => 0.0,
                     allowed => (WIDENING * rest.torque - allowed).max(0.0),
                 };

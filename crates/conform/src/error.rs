@@ -138,8 +138,6 @@ impl Error {
         Self::Other(AnyError::new(error))
     }
 
-    /// Returns the settings that help.
-    #[must_use]
     pub(crate) fn settings(&self) -> Vec<Setting> {
         match self {
             Self::NotPoints => vec![Setting::new("notion", "exact")],

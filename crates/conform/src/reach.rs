@@ -96,7 +96,7 @@ impl SuiteReach {
         reach: &ReachSets,
         tube: StepBounds,
     ) -> Self {
-        let dimension = 2 * case.joints();
+        let dimension = case.states();
         let (mut nominal, mut lower, mut upper) = (Vec::new(), Vec::new(), Vec::new());
         for k in 0..times.len() {
             for (i, x) in trajectory.state(k).iter().enumerate() {
@@ -117,7 +117,7 @@ impl SuiteReach {
         flowpipe: &Flowpipe,
         lost: Option<Lost>,
     ) -> Self {
-        let (dimension, samples) = (2 * case.joints(), flowpipe.len());
+        let (dimension, samples) = (case.states(), flowpipe.len());
         nominal.truncate(samples * dimension);
         let hulls = || (0..samples).flat_map(|k| flowpipe.sample(k));
         let steps = (0..samples.saturating_sub(1)).flat_map(|k| flowpipe.step(k)).copied();

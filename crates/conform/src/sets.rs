@@ -39,13 +39,11 @@ impl UncertaintySets {
 
     /// Returns the sets with the radii of X0 and U scaled about their centres, or of U alone where
     /// the noise of the sensors limits X0 (`input_only`).
-    #[must_use]
     pub(crate) fn grown(&self, factor: f64, input_only: bool) -> Self {
         if input_only { self.with_input_scaled(factor) } else { self.inflated(factor, 0.0) }
     }
 
     /// Returns the sets with radii added to X0 and U, 3n, rounded up.
-    #[must_use]
     pub(crate) fn widened(&self, allowance: &[f64]) -> Self {
         let mut wider = self.clone();
         let UncertaintySets { initial_set, input_set, .. } = &mut wider;

@@ -1,4 +1,4 @@
-//! Whether U covers the dry friction of joints that may come to rest.
+//! Whether U covers the dry friction of parts that may come to rest.
 //!
 //! The input of a model is free of dry friction: it was taken off the motor torque at recorded
 //! states. At zero velocity friction is a set of torques, from the limit of backward motion to the
@@ -14,12 +14,12 @@ use crate::data::setup::DryFriction;
 use crate::reach::SuiteReach;
 use crate::sets::UncertaintySets;
 
-/// A joint whose dry friction may differ between motions in a reachable set.
+/// A part whose dry friction may differ between motions in a reachable set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stiction {
-    /// The joint, from 1.
-    pub joint: usize,
+    /// The part, from 1.
+    pub part: usize,
     /// Number of steps in which the velocity may be zero.
     pub steps: usize,
     /// Largest difference between two values of dry friction in one step \[N m; N\].
@@ -41,7 +41,7 @@ impl Stiction {
     }
 }
 
-/// Returns the joints whose dry friction may differ between motions in a step of these reachable
+/// Returns the parts whose dry friction may differ between motions in a step of these reachable
 /// sets, from base to tip; none for link torques, which friction is no part of. `allowance` has the
 /// radii that were added to X0 and U, 3n, or none.
 ///
@@ -50,7 +50,7 @@ impl Stiction {
 /// Outer, directed rounding, for the robot's constants as loaded: dry friction is taken off the
 /// recorded torque at a state of a step, in the reachable set widened by V, or at the nominal one.
 /// For every other state of the same step, whose friction is any that is possible there, both
-/// values differ by at most `torque`. A joint is covered if U contains this difference; after
+/// values differ by at most `torque`. A part is covered if U contains this difference; after
 /// [`Settings::stiction`](crate::Settings::stiction), if U contains it beside any input of the set
 /// before. A disturbance that is held over each sample covers friction as far as friction is held
 /// over it, and a constant one covers nothing. The law of warming is not part of it.
@@ -108,7 +108,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Takes in the step from sample `k` on.
     fn step(&mut self, reach: &SuiteReach, k: usize) {
         let nominal = &reach.nominal[k * self.states.len()..];
         for (i, state) in self.states.iter_mut().enumerate() {
@@ -123,7 +122,7 @@ impl<'a> Search<'a> {
                 found => {
                     let (room, time) = (room[j], reach.times[k]);
                     let case = reach.name();
-                    *found = Some(Stiction { joint: j + 1, steps, torque, room, case, time });
+                    *found = Some(Stiction { part: j + 1, steps, torque, room, case, time });
                 }
             }
         });

@@ -70,7 +70,7 @@ fn verdict(sources: &Sources) -> Verdict {
         .filter(|found| Code::of(&found.code).is_some_and(|code| said.contains(&code)));
     let headline = check.findings.first().into_iter().chain(beside);
     let words: Vec<String> = headline.map(|found| sentence(sources, found)).collect();
-    let warnings = model.warnings.iter().map(Finding::from);
+    let warnings = model.warnings.iter().cloned();
     let mut proved = of_check(&[Code::Points, Code::Rows]);
     let band = "The grey band is an outer bound of the model's reachable set at the samples";
     proved.push(match model.noise_set {
@@ -96,7 +96,7 @@ fn verdict(sources: &Sources) -> Verdict {
 }
 
 fn sets_table(model: &Model) -> SetsTable {
-    let n = model.joints();
+    let n = model.inputs();
     let bounds = |set: &Hyperrectangle, i: usize| <[f64; 2]>::from(set.bounds(i));
     let row = |joint: usize| JointSets {
         joint: joint_name(model, joint),

@@ -73,7 +73,7 @@ fn edge(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 
 /// Returns the share of each state in the weighted widths of the bands over the drawn suites.
 fn by_joint(model: &Model, figures: &[SuiteFigure]) -> Table {
-    let n = model.joints();
+    let n = model.inputs();
     let shares: Vec<f64> =
         (0..2 * n).map(|state| weight(model, state) * widths(model, figures, state)).collect();
     let all: f64 = shares.iter().sum();

@@ -1,7 +1,7 @@
 //! The first lines of a page: the answer in numbers, and one figure of the widest set.
 
 use reachtube_arm::ArmModel;
-use reachtube_conform::plausibility::JointWidth;
+use reachtube_conform::plausibility::PartWidth;
 use reachtube_conform::{Model, SuiteReach};
 use reachtube_pipeline::{Built, HorizonWidths};
 use reachtube_robot::JointKind;
@@ -70,12 +70,12 @@ fn facts_of_sets(model: &Model) -> Vec<(String, String)> {
     let horizon = format!("{} s", significant(said.horizon, 3));
     let widest = said.worst().map(|(joint, _)| {
         let kind = model.arm().robot.joints[joint].kind;
-        ("Widest set".into(), words(&joint_name(model, joint), &said.joints[joint], kind))
+        ("Widest set".into(), words(&joint_name(model, joint), &said.parts[joint], kind))
     });
     [("Horizon".into(), horizon)].into_iter().chain(widest).collect()
 }
 
-fn words(name: &str, width: &JointWidth, kind: JointKind) -> String {
+fn words(name: &str, width: &PartWidth, kind: JointKind) -> String {
     let unit = kind.position_unit();
     match width.half_width {
         None => format!("{name}: it has no bound"),
@@ -113,7 +113,7 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
     };
     let own = of(joint);
     let ([first, .., last], most) = (&own[..], built.largest_ratio()) else { return None };
-    let others = (0..model.joints()).filter(|other| *other != joint);
+    let others = (0..model.inputs()).filter(|other| *other != joint);
     let mut series: Vec<Series> = others.map(|other| Series::line(of(other), GREY)).collect();
     let highest = series.iter().flat_map(|series| &series.points).chain(&own);
     let highest = highest.map(|point| point.1).fold(100.0 * most, f64::max);

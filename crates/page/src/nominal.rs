@@ -67,7 +67,7 @@ fn costs(model: &Model, fit: &FitRecord) -> Table {
 
 fn parameter(model: &Model, p: &FittedParameter) -> Vec<String> {
     vec![
-        format!("{}: {} [{}]", model.signals.parts[p.joint - 1].name, p.name, p.unit),
+        format!("{}: {} [{}]", model.signals.parts[p.part - 1].name, p.name, p.unit),
         four_decimals(p.identified),
         p.standard_error.map_or_else(|| "-".into(), four_decimals),
         four_decimals(p.fitted),

@@ -12,12 +12,12 @@ use crate::svg::{BLUE, GREY, ORANGE};
 /// Draws the phase plane of each joint at the sample where a recording comes closest to the
 /// boundary of the set, or leaves it furthest: the hull, the set in it, and the recordings.
 pub(super) fn phase_planes(problem: &Problem, model: &Model) -> Result<Vec<Chart>> {
-    let planes = PhasePlane::of_joints(problem, &model.sets())?;
+    let planes = PhasePlane::of_parts(problem, &model.sets())?;
     Ok(planes.iter().map(|plane| chart(plane, model)).collect())
 }
 
 fn chart(plane: &PhasePlane, model: &Model) -> Chart {
-    let joint = &model.arm().robot.joints[plane.joint];
+    let joint = &model.arm().robot.joints[plane.part];
     let kind: JointKind = joint.kind;
     let [[q_low, q_high], [v_low, v_high]] = plane.hull;
     let closed = |corners: &[[f64; 2]], colour| {

@@ -61,7 +61,7 @@ fn rank(figure: &SuiteFigure) -> (f64, usize, usize) {
 
 fn figure(sources: &Sources, suite: &Suite, are_many: bool) -> Result<SuiteFigure> {
     let Sources { model, problem, check, reach, .. } = *sources;
-    let (joints, name) = (model.joints(), &suite.entry.name);
+    let (joints, name) = (model.inputs(), &suite.entry.name);
     let own: Vec<&SuiteReach> = reach.iter().filter(|reach| reach.suite == *name).collect();
     let longest = own.iter().max_by_key(|reach| reach.times.len()).copied();
     let longest = longest.ok_or_else(|| Error::NoReachableSet { suite: name.clone() })?;
@@ -129,7 +129,7 @@ fn outside(sources: &Sources, name: &str) -> usize {
 /// recordings, and the worst one outside.
 fn spots(sources: &Sources, suite: &Suite) -> Vec<TightSpot> {
     let Sources { model, problem, check, .. } = *sources;
-    let (joints, name) = (model.joints(), &suite.entry.name);
+    let (joints, name) = (model.inputs(), &suite.entry.name);
     let place =
         |file: &String| suite.runs.iter().position(|run| problem.entry(run.index).file == *file);
     let is_own = sources.are_own();
@@ -268,7 +268,7 @@ fn trace(
         temperature: entry.temperature,
         temperatures: means(&run.temperatures, run.joints),
         times: run.times.clone(),
-        states: columns(&states, 2 * run.joints),
+        states: columns(&states, run.dimension()),
         gauge: None,
         touches: 0,
     })

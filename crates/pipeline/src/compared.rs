@@ -109,7 +109,7 @@ impl HeldOut {
         horizon: f64,
         are_whole: bool,
     ) -> Result<(Self, BTreeSet<String>)> {
-        let n = answer.model.joints();
+        let n = answer.model.inputs();
         let none = BTreeSet::new();
         let windows = match recordings.cut(horizon, usize::MAX) {
             Err(Error::NoWindow { .. }) => {
@@ -170,11 +170,11 @@ fn growth(check: &Check, joints: usize) -> Vec<f64> {
     let mut growth = vec![1.0f64; joints];
     for worst in &check.worst_by_state {
         let factor = 1.0 + worst.excess / worst.radius.max(f64::MIN_POSITIVE);
-        let own = &mut growth[worst.state.joint];
+        let own = &mut growth[worst.state.part];
         *own = own.max(factor);
     }
     // No factor encloses what follows a nominal motion that ran away.
-    check.verdict.lost.iter().for_each(|lost| growth[lost.state.joint] = f64::INFINITY);
+    check.verdict.lost.iter().for_each(|lost| growth[lost.state.part] = f64::INFINITY);
     growth
 }
 

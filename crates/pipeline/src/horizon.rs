@@ -1,5 +1,5 @@
 use reachtube_conform::Answer;
-use reachtube_conform::plausibility::JointWidth;
+use reachtube_conform::plausibility::PartWidth;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -186,7 +186,7 @@ fn narrowest(tried: &[HorizonWidths]) -> usize {
 }
 
 pub(crate) fn ratios(answer: &Answer) -> Vec<f64> {
-    answer.found.usefulness.joints.iter().map(JointWidth::ratio).collect()
+    answer.found.usefulness.parts.iter().map(PartWidth::ratio).collect()
 }
 
 /// Returns the horizons that may be chosen, the longest first: the longest at which no set is wider

@@ -28,12 +28,12 @@ impl Built {
     #[must_use]
     pub fn joints(&self) -> Vec<JointRow> {
         let model = &self.answer.model;
-        let widths = model.usefulness.iter().flat_map(|said| &said.joints).enumerate();
+        let widths = model.usefulness.iter().flat_map(|said| &said.parts).enumerate();
         let narrower = |joint: usize| {
             let without = self.without_model.as_ref()?;
             Some(without.narrower[joint]).filter(|factor| factor.is_finite())
         };
-        let row = |(joint, width): (usize, &reachtube_conform::plausibility::JointWidth)| {
+        let row = |(joint, width): (usize, &reachtube_conform::plausibility::PartWidth)| {
             let growth = self.held_out.growth[joint];
             JointRow {
                 name: model.signals.parts[joint].name.clone(),

@@ -37,8 +37,8 @@ impl LiveMonitor {
                 Some(LiveLog::new(&robot, known, velocity, step, longest_gap)?)
             }
         };
-        let leaves = Vec::with_capacity(KEPT * 2 * model.joints());
-        let alarms = Vec::with_capacity(KEPT * (2 * model.joints() + 1));
+        let leaves = Vec::with_capacity(KEPT * 2 * model.inputs());
+        let alarms = Vec::with_capacity(KEPT * (2 * model.inputs() + 1));
         Ok(Self { log, monitor, leaves, alarms })
     }
 
@@ -63,7 +63,7 @@ impl LiveMonitor {
         for index in 0..runs.runs().len() {
             let name = runs.run_name(index).display().to_string();
             let wrong = |problem: String| ConformError::Healthy { name: name.clone(), problem };
-            let options = ReadOptions { joints: Some(model.joints()), ..ReadOptions::default() };
+            let options = ReadOptions::of(model.inputs());
             let run = runs.read(index, &options).map_err(|defects| {
                 let problem = defects.first().map(ToString::to_string);
                 wrong(problem.unwrap_or_else(|| "it cannot be read".into()))

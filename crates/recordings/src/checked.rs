@@ -29,14 +29,8 @@ impl Run {
     /// # Ok::<(), reachtube_recordings::RunError>(())
     /// ```
     pub fn checked(mut self, name: &Path, options: &ReadOptions) -> Result<Self, Vec<Defect>> {
-        let expected = options.joints.unwrap_or(self.joints);
-        if self.joints != expected {
-            let problem =
-                format!("the run has {} joints, but the robot has {expected}", self.joints);
-            let remedy = "give the robot of the recordings";
-            let defect = Defect::new(name, None, problem, remedy);
-            return Err(vec![defect.of_kind(DefectKind::Joints)]);
-        }
+        let sized = options.joints.map_or(Ok(()), |joints| self.check_size(name, joints));
+        sized.map_err(|defect| vec![defect])?;
         let steps = self.times.windows(2).map(|pair| (None, pair[1] - pair[0]));
         let gaps = options.gap_limit.gaps(name, steps.collect());
         if !gaps.is_empty() {
@@ -44,6 +38,22 @@ impl Run {
         }
         self.truncate(options.until);
         Ok(self)
+    }
+
+    /// Checks that the run has samples, and that they are of `joints` joints.
+    ///
+    /// # Errors
+    ///
+    /// The defect where they are not.
+    pub fn check_size(&self, name: &Path, joints: usize) -> Result<(), Defect> {
+        let (lengths, samples) = ([self.states.len(), 2 * self.torques.len()], self.len());
+        if samples > 0 && self.joints == joints && lengths == [2 * joints * samples; 2] {
+            return Ok(());
+        }
+        let of = if samples == 0 { "no samples of " } else { "" };
+        let problem = format!("the run has {of}{} joints, but the robot has {joints}", self.joints);
+        let remedy = "give the robot of the recordings, and one sample at least";
+        Err(Defect::new(name, None, problem, remedy).of_kind(DefectKind::Joints))
     }
 
     /// Returns the run with the SHA-256 of its numbers, if it has none yet.

@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn another_number_of_joints_is_a_defect() {
-        let options = ReadOptions { joints: Some(6), ..ReadOptions::default() };
+        let options = ReadOptions::of(6);
         let problem = problem(&runs(&[0.0]), &options);
         assert!(problem.contains("run: the run has 1 joints, but the robot has 6"), "{problem}");
     }

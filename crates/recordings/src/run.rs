@@ -150,6 +150,12 @@ impl Run {
         self.times.len()
     }
 
+    /// Returns the number of states, 2n.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        2 * self.joints
+    }
+
     /// Returns whether there is no sample.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -63,7 +63,7 @@ pub fn noise_deviations(run: &Run) -> Option<Vec<f64>> {
 /// Returns the standard deviation of the difference of each state, 2n, from the cubic through its
 /// neighbours.
 fn differences_from_cubics(run: &Run) -> Vec<f64> {
-    let (states, inner) = (2 * run.joints, run.len() - 4);
+    let (states, inner) = (run.dimension(), run.len() - 4);
     // States x inner samples.
     let mut differences = vec![0.0; states * inner];
     for at in 0..inner {

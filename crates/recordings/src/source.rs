@@ -31,6 +31,14 @@ pub struct ReadOptions {
     pub until: Option<f64>,
 }
 
+impl ReadOptions {
+    /// Returns the options for recordings of `joints` joints, without other limits.
+    #[must_use]
+    pub fn of(joints: usize) -> Self {
+        Self { joints: Some(joints), ..Self::default() }
+    }
+}
+
 /// A source of recordings: a folder with an index ([`DataSet`](crate::DataSet)), or runs in memory
 /// ([`MemoryRuns`](crate::MemoryRuns)).
 ///

@@ -34,15 +34,15 @@ impl StateKind {
 /// use reachtube_recordings::{State, StateKind};
 ///
 /// let state = State::from_index(7, 6);
-/// assert_eq!((state.joint, state.kind), (1, StateKind::Velocity));
+/// assert_eq!((state.part, state.kind), (1, StateKind::Velocity));
 /// assert_eq!(state.to_string(), "qd2");
 /// assert_eq!("qd2".parse(), Ok(state));
 /// assert_eq!(state.index(6), 7);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct State {
-    /// The joint, from 0.
-    pub joint: usize,
+    /// The part of the system, from 0: the joint of an arm.
+    pub part: usize,
     /// Position or velocity.
     pub kind: StateKind,
 }
@@ -52,8 +52,8 @@ impl State {
     #[must_use]
     pub fn from_index(index: usize, joints: usize) -> Self {
         match index.checked_sub(joints) {
-            None => Self { joint: index, kind: StateKind::Position },
-            Some(joint) => Self { joint, kind: StateKind::Velocity },
+            None => Self { part: index, kind: StateKind::Position },
+            Some(part) => Self { part, kind: StateKind::Velocity },
         }
     }
 
@@ -61,15 +61,15 @@ impl State {
     #[must_use]
     pub fn index(self, joints: usize) -> usize {
         match self.kind {
-            StateKind::Position => self.joint,
-            StateKind::Velocity => joints + self.joint,
+            StateKind::Position => self.part,
+            StateKind::Velocity => joints + self.part,
         }
     }
 }
 
 impl fmt::Display for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.kind.prefix(), self.joint + 1)
+        write!(f, "{}{}", self.kind.prefix(), self.part + 1)
     }
 }
 
@@ -90,9 +90,9 @@ impl FromStr for State {
             (None, Some(digits)) => (StateKind::Position, digits),
             (None, None) => (StateKind::Position, ""),
         };
-        let joint = digits.parse::<usize>().ok().and_then(|joint| joint.checked_sub(1));
+        let part = digits.parse::<usize>().ok().and_then(|part| part.checked_sub(1));
         let wrong = || StateNameError { name: name.into() };
-        joint.map(|joint| Self { joint, kind }).ok_or_else(wrong)
+        part.map(|part| Self { part, kind }).ok_or_else(wrong)
     }
 }
 

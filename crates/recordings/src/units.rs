@@ -116,7 +116,7 @@ pub fn check_limits(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
     if defects.is_empty() {
         defects.extend(time_defect(path, run));
     }
-    let furthest = largest_magnitudes(&run.states, 2 * run.joints);
+    let furthest = largest_magnitudes(&run.states, run.dimension());
     defects.extend(beyond_limits(path, &furthest, axes));
     defects.extend(torque_defects(path, run, axes));
     defects.extend(dead_velocities(path, run, &furthest[run.joints..]));

@@ -10,7 +10,7 @@ from .errors import BadInput
 
 NOTIONS = {
     "hull": "each state in the interval hull of the reachable set",
-    "phase-plane": "position and velocity of each joint together in the reachable set",
+    "phase-plane": "each position and its velocity together in the reachable set",
     "exact": "all states together in the reachable set",
 }
 

@@ -132,7 +132,7 @@ fn a_fit_moves_the_robot_whose_equations_count() {
     let found = conform_all(&fitted.problem);
     let record = &fitted.record;
     assert!(found.verdict.conformant && record.cost < 0.5 * record.identified_cost, "{record:?}");
-    let elbow = record.parameters.iter().find(|parameter| parameter.joint == 2).unwrap();
+    let elbow = record.parameters.iter().find(|parameter| parameter.part == 2).unwrap();
     assert!((elbow.fitted / 1.6 - 1.0).abs() < 0.05, "{elbow:?}");
 }
 

@@ -4,14 +4,12 @@ use crate::common::{Random, conform_all, fold_of, grid, setup, step, two_joints}
 use nalgebra::DVector;
 use reachtube_abstraction::{Abstraction, ExpansionPoint, ModelKind, linear_model};
 use reachtube_arm::{ArmSettings, OfArm};
-use reachtube_conform::Code;
 use reachtube_conform::fit::{FitRecord, Fitted};
 use reachtube_conform::fleet::OnDefect;
-use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::{Centre, NominalStart};
 use reachtube_conform::{
-    Error, FitSettings, Group, Keep, Model, Problem, Progress, Settings, Setup, Silent, carry_over,
-    fit,
+    Code, Error, FitSettings, Group, Keep, Model, Problem, Progress, Settings, Setup, Silent,
+    carry_over, fit,
 };
 use reachtube_reach::Disturbance;
 use reachtube_recordings::{MemoryRuns, Run, RunSource, Torque};
@@ -149,7 +147,7 @@ fn a_wrong_inertia_and_friction_are_found_and_the_sets_are_proved() {
         assert!(after.verdict.conformant && after.cost < 0.2 * before.cost, "{}", after.cost);
         let same = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
         assert!(same(record.identified_cost, before.cost) && same(record.cost, after.cost));
-        let elbow = record.parameters.iter().find(|p| p.joint == 2 && p.group == Group::Viscous);
+        let elbow = record.parameters.iter().find(|p| p.part == 2 && p.group == Group::Viscous);
         assert!((elbow.unwrap().fitted - 1.6).abs() < 0.05, "{:?}", record.parameters);
         let closer = record.torque.iter().all(|torque| torque.fitted < torque.identified);
         assert!(record.torque.len() == 2 && closer, "{:?}", record.torque);
@@ -197,7 +195,7 @@ fn standard_errors_of_the_description_stand_beside_the_values() {
         let moved = (parameter.fitted - parameter.identified).abs();
         assert_eq!(
             moved > 0.3 && parameter.standard_error.is_some(),
-            is_viscous && parameter.joint == 2,
+            is_viscous && parameter.part == 2,
             "{parameter:?}"
         );
     }
@@ -275,7 +273,7 @@ fn overfitted(elbows: &[f64], calibrate: &[&str]) -> (Option<String>, FitRecord)
     let problem = of_arms(elbows, calibrate);
     let Fitted { problem, record, .. } = fitted(&problem, &[Group::Viscous], Some(0.001));
     let model = Model::new(&problem, &conform_all(&problem)).with_fit(record.clone());
-    let of = model.warnings.into_iter().filter(|found| found.kind == WarningKind::Overfitted);
+    let of = model.warnings.into_iter().filter(|found| found.code == Code::Overfitted);
     (of.map(|found| found.text).next(), record)
 }
 

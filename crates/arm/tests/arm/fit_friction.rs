@@ -18,7 +18,7 @@ fn friction_that_changes_with_the_runs_is_found_and_is_in_the_model_file() {
     let Fitted { problem: better, record, .. } =
         fitted(&problem, &[Group::Viscous, Group::WarmUp], Some(0.001));
     assert!(record.cost < 0.4 * without.record.cost, "{record:?}");
-    let elbow = record.parameters.iter().find(|p| p.joint == 2 && p.group == Group::WarmUp);
+    let elbow = record.parameters.iter().find(|p| p.part == 2 && p.group == Group::WarmUp);
     assert!((elbow.unwrap().fitted + 0.25).abs() < 0.05, "{record:?}");
     let found = conform_all(&better);
     assert!(found.verdict.conformant);
@@ -70,7 +70,7 @@ fn friction_that_changes_with_recorded_temperatures_is_found() {
     let Fitted { problem: better, record, .. } = fitted(&problem, &[Group::WarmUp], Some(0.001));
     assert!(record.cost < 0.4 * before.cost, "{} {}", before.cost, record.cost);
     let of = |joint: usize, unit: &str| {
-        let is = |p: &&FittedParameter| p.joint == joint && p.unit == unit;
+        let is = |p: &&FittedParameter| p.part == joint && p.unit == unit;
         record.parameters.iter().find(is).unwrap().fitted
     };
     assert!((of(2, "N m/(rad/s)/K") + 0.03).abs() < 0.005, "{:?}", record.parameters);

@@ -74,7 +74,7 @@ fn a_nominal_motion_that_runs_away_counts_as_outside() {
     assert!(!check.verdict.conformant);
     let lost = &check.verdict.lost[0];
     assert!(
-        lost.nominal && lost.state.joint == 0 && lost.time > 0.05 && lost.time < 1.0,
+        lost.nominal && lost.state.part == 0 && lost.time > 0.05 && lost.time < 1.0,
         "{lost:?}"
     );
     let after = 2 * (SAMPLES - 1 - (lost.time / STEP).round() as usize);

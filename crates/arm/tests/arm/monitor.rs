@@ -291,7 +291,7 @@ fn replayed_schunk_recordings_have_the_verdicts_of_a_check() {
     let found = conform_all(&problem);
     let model = Model::new(&problem, &found);
     let data = DataSet::open(&folder).unwrap();
-    let options = ReadOptions { joints: Some(6), ..ReadOptions::default() };
+    let options = ReadOptions::of(6);
     let (suites, mut left) = (data.suites(), [0; 2]);
     for (name, left) in ["D", "E"].into_iter().zip(&mut left) {
         let suite = suites.iter().find(|suite| suite.name == name).unwrap();

@@ -7,11 +7,11 @@ use crate::common::{
 use reachtube_abstraction::{Abstraction, ModelKind};
 use reachtube_arm::ArmModel;
 use reachtube_conform::next_motion::Trust;
-use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::tube::Witness;
 use reachtube_conform::{
-    Check, Error, Keep, Model, Notion, Problem, Settings, Silent, Tube, carry_over, check, conform,
+    Check, Code, Error, Keep, Model, Notion, Problem, Settings, Silent, Tube, carry_over, check,
+    conform,
 };
 use reachtube_recordings::{MemoryRuns, Run};
 use tempfile::TempDir;
@@ -156,7 +156,7 @@ fn a_motion_that_makes_calibrated_sets_absurd_is_named() {
     let folder = recorded([0.05, 0.05, 0.05, 5.0]);
     let cause = |suites: &[&str], calibrate: &[&str]| {
         let found = conform_all(&read(&two_joints(), folder.path(), suites, &settings(calibrate)));
-        let cause = found.warnings.into_iter().find(|found| found.kind == WarningKind::Cause);
+        let cause = found.warnings.into_iter().find(|found| found.code == Code::Cause);
         cause.map(|cause| cause.text)
     };
     let words = cause(&[], &["c", "d"]).unwrap();
@@ -370,7 +370,7 @@ fn a_joint_that_follows_the_order_of_the_runs_is_named() {
     let rising: Vec<f64> = (0..12).map(|run| 0.01 * f64::from(run)).collect();
     let found = conform_all(&drifting(&rising));
     let [trend] = &found.trends[..] else { panic!("{:?}", found.trends) };
-    assert_eq!((trend.suite.as_str(), trend.runs, trend.joint), ("A", 12, 2));
+    assert_eq!((trend.suite.as_str(), trend.runs, trend.part), ("A", 12, 2));
     // 100 samples: every second one is kept, up to sample 98.
     assert!(trend.correlation > 0.999 && (trend.range - 0.11 * 0.98).abs() < 1e-9, "{trend:?}");
     let mixed = [0.0, 0.09, 0.03, 0.06, 0.01, 0.11, 0.04, 0.08, 0.02, 0.1, 0.05, 0.07];

@@ -9,10 +9,9 @@ use microlp::{ComparisonOp, OptimizationDirection, SolveOutcome, Variable};
 use nalgebra::{DMatrix, DVector};
 use reachtube_abstraction::{ExpansionPoint, linear_model};
 use reachtube_conform::claim::Certificate;
-use reachtube_conform::plausibility::WarningKind;
 use reachtube_conform::settings::{Centre, InitialLimit, States};
 use reachtube_conform::{
-    Conformance, Error, Model, Notion, Problem, Settings, Tube, UncertaintySets, check, reach,
+    Code, Conformance, Error, Model, Notion, Problem, Settings, Tube, UncertaintySets, check, reach,
 };
 use reachtube_reach::{Disturbance, Hyperrectangle, LinearSystem};
 use reachtube_robot::Robot;
@@ -275,8 +274,8 @@ fn an_initial_set_that_takes_over_is_warned_of_and_can_be_limited() {
         let (problem, found) =
             found(folder.path(), &Settings { states, initial_limit, ..settings(notion) });
         assert!(found.verdict.conformant, "{initial_limit:?} {notion:?}");
-        let starts = WarningKind::InitialSetStarts;
-        let warned = found.warnings.iter().any(|warning| warning.kind == starts);
+        let starts = Code::InitialSetStarts;
+        let warned = found.warnings.iter().any(|warning| warning.code == starts);
         let runs = &problem.recordings().suites[0].runs;
         let start = &problem.recordings().suites[0].nominal_start;
         let set = &found.sets.initial_set;

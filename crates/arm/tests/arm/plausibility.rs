@@ -2,9 +2,10 @@
 
 use crate::common::{Random, grid};
 use reachtube_arm::{ArmSettings, Equations, setup};
-use reachtube_conform::plausibility::{Warning, WarningKind};
 use reachtube_conform::settings::{Method, NominalStart};
-use reachtube_conform::{Conformance, Keep, Model, Noise, Problem, Settings, Silent, conform};
+use reachtube_conform::{
+    Code, Conformance, Keep, Model, Noise, Problem, Settings, Silent, conform,
+};
 use reachtube_finding::Finding;
 use reachtube_recordings::{MemoryRuns, Run, Torque};
 use reachtube_robot::Robot;
@@ -120,9 +121,9 @@ fn found_for(
 }
 
 /// Returns the cause among warnings with its remedy.
-fn cause(warnings: &[Warning]) -> Option<String> {
-    let is_cause = |warning: &&Warning| warning.kind == WarningKind::Cause;
-    warnings.iter().find(is_cause).map(|warning| Finding::from(warning).to_string())
+fn cause(warnings: &[Finding]) -> Option<String> {
+    let is_cause = |warning: &&Finding| warning.code == Code::Cause;
+    warnings.iter().find(is_cause).map(|warning| warning.to_string())
 }
 
 #[test]
@@ -256,19 +257,19 @@ fn a_constant_torque_that_the_model_does_not_have_is_remarked() {
         let settings = Settings { nominal: NominalStart::Own, ..Settings::default() };
         let by_robot = ArmSettings { equations: Equations::Robot, ..motor(JOINTS) };
         let (_, found) = found_for(arm(), &Written { offset, ..RIGHT }, by_robot, settings);
-        let offsets = found.warnings.iter().find(|w| w.kind == WarningKind::InputSetOffset);
-        offsets.map(|warning| (warning.joints.clone(), found.sets.input_set.centre[0]))
+        let offsets = found.warnings.iter().find(|w| w.code == Code::InputSetOffset);
+        offsets.map(|warning| (warning.place.clone().unwrap(), found.sets.input_set.centre[0]))
     };
     let (joints, centre) = of(3.0).unwrap();
-    assert!(joints.contains(&1) && (centre + 3.0).abs() < 0.5, "{joints:?} {centre}");
+    assert!(joints.contains('1') && (centre + 3.0).abs() < 0.5, "{joints:?} {centre}");
     let right = of(0.0);
-    assert!(right.as_ref().is_none_or(|(joints, _)| !joints.contains(&1)), "{right:?}");
+    assert!(right.as_ref().is_none_or(|(joints, _)| !joints.contains('1')), "{right:?}");
 }
 
 #[test]
 fn noise_as_wide_as_the_motion_is_remarked() {
     let settings = Settings { noise: Noise::Fixed(vec![1.0; 12]), ..Settings::default() };
     let (_, found) = found(&RIGHT, settings);
-    let kinds: Vec<WarningKind> = found.warnings.iter().map(|warning| warning.kind).collect();
-    assert!(kinds.contains(&WarningKind::NoiseSetSize), "{kinds:?}");
+    let mut codes = found.warnings.iter().map(|warning| &warning.code);
+    assert!(codes.any(|code| *code == Code::NoiseSetSize), "{:?}", found.warnings);
 }

@@ -101,7 +101,7 @@ fn gauges_are_those_of_an_independent_program_and_warming_up_is_named() {
         assert!((gauge - expected).abs() < 0.05, "{gauges:?}");
     }
     for (suite, joint) in [("A", 3), ("B", 3), ("E", 3)] {
-        let trend = |trend: &&Trend| trend.suite == suite && trend.joint == joint;
+        let trend = |trend: &&Trend| trend.suite == suite && trend.part == joint;
         assert!(found.trends.iter().find(trend).unwrap().correlation.abs() > 0.9);
     }
 }
@@ -137,7 +137,7 @@ fn violations_are_counted_as_a_plain_simulation_counts_them() {
     let model = Model::new(&problem, &found);
     let checked = check_against(&model, &folder, &["D", "E"]).verdict;
     let data = DataSet::open(&folder).unwrap();
-    let options = ReadOptions { joints: Some(6), ..ReadOptions::default() };
+    let options = ReadOptions::of(6);
     let mut count = 0;
     let mut worst: f64 = 0.0;
     for suite in data.select(&["D", "E"].map(String::from)).unwrap() {

@@ -37,8 +37,8 @@ fn friction_at_rest_is_covered_by_a_wide_u_only() {
     let load = robot.gravity_torque(&q);
     for rest in &narrow {
         // Both limits of standstill, at the load of the recorded position.
-        let friction = &robot.joints()[rest.joint - 1].friction;
-        let limit = |sign: f64| friction.dry_torque(load[rest.joint - 1], sign * 1e-9);
+        let friction = &robot.joints()[rest.part - 1].friction;
+        let limit = |sign: f64| friction.dry_torque(load[rest.part - 1], sign * 1e-9);
         let apart = (limit(1.0) - limit(-1.0)).abs();
         assert!(apart > 1.0 && rest.torque >= apart && rest.torque < 1.2 * apart, "{rest:?}");
         assert!(!rest.is_covered() && rest.steps == 2 && rest.room == 0.5, "{rest:?}");

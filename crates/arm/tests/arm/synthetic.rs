@@ -315,7 +315,7 @@ fn a_point_pushed_out_of_the_set_is_the_witness() {
     let worst = checked.violations.worst.unwrap();
     assert!(!checked.conformant && checked.violations.count == 1);
     assert_eq!(
-        (worst.run.as_str(), worst.sample, worst.joint, worst.state.to_string().as_str()),
+        (worst.run.as_str(), worst.sample, worst.part, worst.state.to_string().as_str()),
         ("a_02.csv", k, 2, "q2")
     );
     assert!(worst.excess > 0.0 && worst.excess <= 0.5);

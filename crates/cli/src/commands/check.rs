@@ -2,7 +2,6 @@
 
 use clap::Args;
 use reachtube::conform::{Keep, Notion};
-use reachtube::finding::Finding;
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
@@ -43,7 +42,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         output::print_verdict(&opened.summary(&check).to_string(), &outcome)?;
         return Ok(outcome);
     }
-    let warnings = opened.model.warnings.iter().map(Finding::from);
+    let warnings = opened.model.warnings.iter();
     warnings.for_each(|warning| output::warn(&format!("of the model itself: {warning}")));
     if json {
         output::print_json(&check)?;

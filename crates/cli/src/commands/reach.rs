@@ -157,7 +157,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Returns the name of a joint that may come to rest.
 fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
-    &model.signals.parts[rest.joint - 1].name
+    &model.signals.parts[rest.part - 1].name
 }
 
 impl<'a> RestOutput<'a> {

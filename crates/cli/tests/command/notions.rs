@@ -42,7 +42,7 @@ fn a_point_outside_is_named_with_the_states_that_show_it() {
     assert!(of("points")["numbers"]["outside"].as_f64().unwrap() >= 1.0, "{findings:?}");
     assert_eq!(of("furthest-outside")["place"], "A_1.csv");
     let run = lab.run(&format!("{check} --notion phase-plane")).exits(1);
-    assert!(run.stdout.contains("position and velocity of each joint"), "{}", run.stdout);
+    assert!(run.stdout.contains("each position and its velocity"), "{}", run.stdout);
     // By default a model is checked in its own notion, the hull.
     assert!(!lab.run(check).exits(1).stdout.contains("recorded points"));
 }

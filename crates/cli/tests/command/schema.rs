@@ -119,7 +119,7 @@ fn a_smaller_set_is_no_longer_conformant() {
     model["input_set"]["radius"] = json!([0.05, 0.1]);
     lab.write("model.json", sealed(model));
     let worst = lab.check("--json").exits(1).json()["violations"]["worst"].clone();
-    assert_eq!(worst["joint"], 1);
+    assert_eq!(worst["part"], 1);
 }
 
 #[test]

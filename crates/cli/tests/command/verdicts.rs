@@ -118,7 +118,7 @@ fn one_value_outside_is_found_with_its_place() {
     let expected = [("suite", "B"), ("run", "B_2.csv"), ("state", "q1"), ("side", "upper")];
     expected.iter().for_each(|(key, value)| assert_eq!(worst[key], *value, "{worst}"));
     assert_eq!(
-        (&worst["sample"], &worst["time"], &worst["joint"]),
+        (&worst["sample"], &worst["time"], &worst["part"]),
         (&20.into(), &0.2.into(), &1.into())
     );
     // The run is in the middle of the set, whose radius there is at least the radius of X0.

@@ -1,5 +1,5 @@
 //! Conditions on recordings beyond the rows: every recorded point lies in the reachable set itself
-//! (exact), or in its projections on the phase planes of the joints.
+//! (exact), or in its projections on the phase planes of the parts.
 
 pub(crate) mod certificate;
 #[expect(clippy::module_inception, reason = "the folder and its main trait share the noun")]

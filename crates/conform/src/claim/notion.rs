@@ -29,11 +29,6 @@ impl Settings {
     }
 }
 
-/// Returns what the notion of a problem claims.
-///
-/// # Errors
-///
-/// As [`Points::new`].
 pub(crate) fn claim(problem: &Problem) -> Result<Box<dyn Claim + '_>> {
     Ok(match problem.settings().notion {
         Notion::Hull => Box::new(Rows),
@@ -42,10 +37,6 @@ pub(crate) fn claim(problem: &Problem) -> Result<Box<dyn Claim + '_>> {
 }
 
 /// Returns the model of a problem over its recordings.
-///
-/// # Errors
-///
-/// As [`Linear::new`].
 pub(crate) fn plant(problem: &Problem) -> Result<Box<dyn Plant + '_>> {
     Ok(match problem.dynamics().linear_system() {
         Some(_) => Box::new(Linear::new(problem)?),
@@ -76,10 +67,6 @@ impl Tube {
 
 /// Judges the recorded points in reachable sets, where the notion asks them and they were not
 /// judged yet.
-///
-/// # Errors
-///
-/// As [`Claim::judge`].
 pub(crate) fn judged(problem: &Problem, tube: &Tube) -> Result<Option<Tube>> {
     if !problem.settings().notion.asks_points() || tube.judged.is_some() {
         return Ok(None);

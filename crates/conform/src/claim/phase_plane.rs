@@ -1,4 +1,4 @@
-//! The phase planes of the joints, for figures.
+//! The phase planes of the parts, for figures.
 
 use rayon::prelude::*;
 
@@ -11,12 +11,12 @@ use crate::sets::UncertaintySets;
 use crate::tube::linear::Linear;
 use crate::tube::plant::Slice;
 
-/// The reachable set of one joint's position and velocity at one sample, with the recordings
+/// The reachable set of one part's position and velocity at one sample, with the recordings
 /// there. All values are deviations from the nominal motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PhasePlane {
-    /// The joint, from 0.
-    pub joint: usize,
+    /// The part, from 0.
+    pub part: usize,
     /// Time since the first sample, s.
     pub time: f64,
     /// The vertices of the set's projection, counter-clockwise: position, velocity.
@@ -28,7 +28,7 @@ pub struct PhasePlane {
 }
 
 impl PhasePlane {
-    /// Returns the phase plane of each joint at the sample where a recording comes closest to the
+    /// Returns the phase plane of each part at the sample where a recording comes closest to the
     /// boundary of the set's projection, or leaves it furthest; empty for a model that is not
     /// linear, or where only positions count.
     ///
@@ -39,7 +39,7 @@ impl PhasePlane {
     /// # Errors
     ///
     /// As [`Problem::run`].
-    pub fn of_joints(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Self>> {
+    pub fn of_parts(problem: &Problem, sets: &UncertaintySets) -> Result<Vec<Self>> {
         if problem.dynamics().linear_system().is_none()
             || problem.settings().states == States::Positions
         {
@@ -60,7 +60,7 @@ impl PhasePlane {
         plant: &Linear,
         at: &SamplePoints,
         sets: &UncertaintySets,
-        (joint, states): (usize, &[usize]),
+        (part, states): (usize, &[usize]),
     ) -> Self {
         let slice = plant.slice(sets, at.place());
         let (centre, _) = slice.centre();
@@ -69,7 +69,7 @@ impl PhasePlane {
         let hull = slice.hull();
         let bounds = |i: usize| [centre[i] - hull[i], centre[i] + hull[i]];
         Self {
-            joint,
+            part,
             time: plant.grids[at.strand].propagation.grid().times()[at.sample],
             polygon: rows.zonotope(vec![centre[q], centre[qd]]).polygon(0, 1),
             hull: [bounds(q), bounds(qd)],

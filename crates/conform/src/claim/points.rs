@@ -38,11 +38,6 @@ pub(crate) struct Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    /// Collects the points of a problem.
-    ///
-    /// # Errors
-    ///
-    /// As [`points`].
     pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
         let (settings, parts) = (problem.settings(), problem.parts());
         let rows = settings.states.rows(problem.shape().states);
@@ -68,7 +63,6 @@ impl<'a> Points<'a> {
         Along { owner, file, point, value }
     }
 
-    /// Returns, for each sample, the points that are in one of the lists.
     fn in_lists(&self, plant: &dyn Plant, wanted: &[Near]) -> Result<Vec<Vec<usize>>> {
         let mut lists = self.lists.lock().unwrap_or_else(PoisonError::into_inner);
         let mut all = vec![Vec::new(); self.samples.len()];
@@ -212,7 +206,6 @@ impl<'a> Points<'a> {
         judged
     }
 
-    /// Searches the points `near` at a slice.
     fn search(&self, index: usize, slice: &dyn Slice, tolerance: f64, near: &[usize]) -> Judged {
         if near.is_empty() {
             return Judged::default();

@@ -33,12 +33,10 @@ impl SamplePoints {
         self.values.chunks_exact(self.states.max(1))
     }
 
-    /// Returns strand and sample.
     pub(crate) fn place(&self) -> At {
         (self.strand as u32, self.sample as u32)
     }
 
-    /// Returns a point, 2n entries.
     pub(crate) fn point(&self, index: usize) -> &[f64] {
         &self.values[index * self.states..][..self.states]
     }
@@ -64,10 +62,6 @@ impl SamplePoints {
 ///
 /// Outer: the exact deviation from the nominal motion of a linear model lies within `errors` of
 /// its point. Recorded states are exact.
-///
-/// # Errors
-///
-/// As [`Problem::grids`] and [`Problem::run`].
 pub(crate) fn points(problem: &Problem) -> Result<Vec<SamplePoints>> {
     match problem.dynamics().linear_system() {
         Some(_) => deviations(problem),
@@ -79,7 +73,7 @@ pub(crate) fn points(problem: &Problem) -> Result<Vec<SamplePoints>> {
 fn states(problem: &Problem) -> Result<Vec<SamplePoints>> {
     let cases = problem.cases()?;
     let lengths = cases.iter().map(|case| case.grid.len());
-    let mut all = AllPoints::empty(lengths, 2 * problem.joints());
+    let mut all = AllPoints::empty(lengths, problem.states());
     for (strand, case) in cases.iter().enumerate() {
         let suite = &problem.recordings().suites[case.suite];
         let is_own = |index: usize| case.run.is_none_or(|run| run == index);
@@ -100,7 +94,7 @@ fn states(problem: &Problem) -> Result<Vec<SamplePoints>> {
 fn deviations(problem: &Problem) -> Result<Vec<SamplePoints>> {
     let grids = problem.grids()?;
     let lengths = grids.as_slice().iter().map(|grid| grid.propagation.grid().len());
-    let mut all = AllPoints::empty(lengths, 2 * problem.joints());
+    let mut all = AllPoints::empty(lengths, problem.states());
     let of_case = |case: Case| Ok((Nominal::new(grids, &case), case.run));
     for (index, suite) in problem.recordings().suites.iter().enumerate() {
         for (nominal, run) in problem.cases_of(index, of_case)? {

@@ -62,13 +62,11 @@ impl<'a> CentredPoints<'a> {
         Self { at, centre, error }
     }
 
-    /// Returns a point in the entries `states`.
     pub(crate) fn point(&self, index: usize, states: &[usize]) -> Vec<f64> {
         let measured = self.at.point(index);
         states.iter().map(|&i| measured[i] - self.centre[i]).collect()
     }
 
-    /// Returns a point, 2n entries.
     pub(crate) fn whole(&self, index: usize) -> Vec<f64> {
         self.at.point(index).iter().zip(&self.centre).map(|(x, c)| x - c).collect()
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::claim::notion::judged;
 use crate::claim::witness::PointVerdict;
 use crate::data::problem::Problem;
-use crate::data::settings::{Settings, States};
+use crate::data::settings::States;
 use crate::data::suite::Suite;
 use crate::error::Result;
 use crate::tube::judged::Judged;
@@ -112,10 +112,6 @@ impl Verdict {
     /// # Guarantee
     ///
     /// As [`new`](Self::new).
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new).
     pub(crate) fn visiting(
         problem: &Problem,
         tube: &Tube,
@@ -144,7 +140,7 @@ impl Verdict {
         let (runs, enclosure) = (problem.recordings().run_count(), tube.enclosure);
         Ok(Self {
             conformant: rows > 0 && suites.iter().all(SuiteVerdict::holds),
-            claim: claim(runs, problem.settings(), enclosure),
+            claim: claim(runs, problem, enclosure),
             enclosure,
             runs,
             rows,
@@ -189,7 +185,6 @@ impl SuiteVerdict {
     }
 }
 
-/// Counts the recorded points that were judged for each suite.
 fn count_points(
     problem: &Problem,
     tube: &Tube,
@@ -209,7 +204,8 @@ fn count_points(
     PointVerdict::new(problem, tube, judged)
 }
 
-fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {
+fn claim(runs: usize, problem: &Problem, enclosure: Enclosure) -> String {
+    let settings = problem.settings();
     let states = match settings.states {
         States::All => "position and velocity",
         States::Positions => "position",
@@ -222,7 +218,7 @@ fn claim(runs: usize, settings: &Settings, enclosure: Enclosure) -> String {
              disturbance in U"
         }
     };
-    let lies = settings.notion.claim_words(states, set);
+    let lies = settings.notion.claim_words(states, set, &problem.signals().noun);
     let until = settings.until_words();
     format!(
         "for each of the {runs} recordings, at each of its samples{until}, {lies}; {how}, at \

@@ -78,7 +78,6 @@ pub(crate) struct SeparatedPoint<'a> {
 }
 
 impl PointVerdict {
-    /// Sums up what was found about the points of a problem.
     pub(crate) fn new(problem: &Problem, tube: &Tube, judged: &Judged) -> Self {
         let worst = judged.furthest.iter().max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio));
         let witness = |((at, _), outside): (&(At, u32), &PointOutside)| {
@@ -120,15 +119,13 @@ impl PointWitness {
             run: point.file.into(),
             sample: point.sample,
             time: point.time,
-            combination: combination(&direction, &parts, problem.joints()),
+            combination: combination(&direction, &parts, problem.inputs()),
             direction,
             value,
             reach: value / point.ratio,
         }
     }
 
-    /// Returns the state that counts most in the combination.
-    #[must_use]
     pub(crate) fn leading_state(&self) -> State {
         State::from_index(self.leading_index(), self.direction.len() / 2)
     }
@@ -146,7 +143,7 @@ impl PointWitness {
             run,
             sample,
             time,
-            joint: state.joint + 1,
+            part: state.part + 1,
             state,
             side: if direction[index] > 0.0 { Side::Upper } else { Side::Lower },
             excess: value - reach,
@@ -155,13 +152,12 @@ impl PointWitness {
     }
 }
 
-/// The index of the largest part.
 fn leading(parts: &[f64]) -> usize {
     (0..parts.len()).max_by(|&i, &l| parts[i].total_cmp(&parts[l])).unwrap_or(0)
 }
 
 /// The combination in words: the leading state first, then the others by their parts.
-fn combination(direction: &[f64], parts: &[f64], joints: usize) -> String {
+fn combination(direction: &[f64], parts: &[f64], inputs: usize) -> String {
     let largest = parts[leading(parts)];
     let mut named: Vec<usize> = (0..parts.len()).filter(|i| parts[*i] >= NAMED * largest).collect();
     named.sort_by(|&i, &l| parts[l].total_cmp(&parts[i]));
@@ -177,12 +173,11 @@ fn combination(direction: &[f64], parts: &[f64], joints: usize) -> String {
             1.0 => String::new(),
             size => format!("{} ", three_digits(size)),
         };
-        let _ = write!(words, "{sign}{factor}{}", State::from_index(i, joints));
+        let _ = write!(words, "{sign}{factor}{}", State::from_index(i, inputs));
     }
     words
 }
 
-/// A positive number with about three digits.
 fn three_digits(x: f64) -> String {
     let digits = (2.0 - x.log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{x:.digits$}")

@@ -30,14 +30,17 @@ pub struct Case {
 }
 
 impl Case {
-    /// Returns the number of joints n.
+    pub(crate) fn states(&self) -> usize {
+        self.start.len()
+    }
+
+    /// Returns the number of parts n, of two states and an input each.
     #[must_use]
-    pub fn joints(&self) -> usize {
+    pub fn parts(&self) -> usize {
         self.start.len() / 2
     }
 
     /// Returns the nominal initial state as intervals without width, 2n. Exact.
-    #[must_use]
     pub(crate) fn start_interval(&self) -> IntervalVector {
         IntervalVector::from_iterator(self.start.len(), self.start.iter().map(|&x| x.into()))
     }

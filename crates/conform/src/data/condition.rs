@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Condition {
     /// The run's place in the order of its suite, from 1.
     pub place: u64,
-    /// The mean temperature of each joint, n, °C, if it was recorded.
+    /// The mean temperature of each part, n, °C, if it was recorded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperatures: Option<Vec<f64>>,
 }
@@ -18,8 +18,6 @@ impl Condition {
         Self { place, temperatures: run.mean_temperature() }
     }
 
-    /// Returns the condition of the first run, the default.
-    #[must_use]
     pub(crate) fn first() -> Self {
         Self { place: 1, temperatures: None }
     }

@@ -129,12 +129,10 @@ impl Envelope {
         self.lower[k * self.dimension + i]
     }
 
-    /// Returns the run that has the highest value.
     pub(crate) fn upper_run(&self, k: usize, i: usize) -> u32 {
         self.upper_run[k * self.dimension + i]
     }
 
-    /// Returns the run that has the lowest value.
     pub(crate) fn lower_run(&self, k: usize, i: usize) -> u32 {
         self.lower_run[k * self.dimension + i]
     }

@@ -15,7 +15,6 @@ pub(super) struct KeptRuns {
 }
 
 impl KeptRuns {
-    /// Keeps run `index` while there is room for it.
     pub(super) fn keep(&self, index: usize, run: Run) {
         let values = run.times.len() + run.states.len() + run.torques.len();
         let bytes = values * size_of::<f64>();
@@ -24,7 +23,6 @@ impl KeptRuns {
         }
     }
 
-    /// Ends the reading.
     pub(super) fn into_runs(self) -> HashMap<usize, Run> {
         self.runs.into_inner().unwrap_or_else(PoisonError::into_inner)
     }

@@ -16,10 +16,9 @@ pub(crate) struct Marks {
 }
 
 impl Marks {
-    /// Takes 64 states of a run at most.
     pub(super) fn new(run: &Run) -> Self {
-        let (stride, dimension) =
-            (run.len().div_ceil(MOST_MARKS).next_power_of_two(), 2 * run.joints);
+        let stride = run.len().div_ceil(MOST_MARKS).next_power_of_two();
+        let dimension = run.dimension();
         let mut states = Vec::with_capacity(run.len().div_ceil(stride) * dimension);
         (0..run.len()).step_by(stride).for_each(|k| states.extend_from_slice(run.state(k)));
         Self { stride, states, dimension }
@@ -30,7 +29,6 @@ impl Marks {
         self.states.is_empty()
     }
 
-    /// Drops the states.
     pub(crate) fn clear(&mut self) {
         self.states = Vec::new();
     }

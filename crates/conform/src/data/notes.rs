@@ -8,7 +8,6 @@ use crate::data::settings::NominalStart;
 use crate::data::setup::Setup;
 use crate::data::suite::Suite;
 
-/// Returns notes for the user about the recordings that were read.
 pub(super) fn recording_notes(
     setup: &Setup,
     origin: &Origin,
@@ -61,7 +60,6 @@ fn suite_notes(suite: &Suite, setup: &Setup) -> Vec<String> {
     notes
 }
 
-/// Notes recordings without the temperature that friction depends on.
 fn unknown_temperature(setup: &Setup, recordings: &Recordings) -> Option<String> {
     let with: usize = recordings.suites.iter().map(|s| s.totals.with_temperature()).sum();
     let without = recordings.run_count() - with;

@@ -13,7 +13,7 @@ pub enum Notion {
     /// Each state by itself: in the interval hull of the set, the paper's notion.
     #[default]
     Hull,
-    /// Position and velocity of each joint together: in the set's projection on its phase plane.
+    /// Position and velocity of each part together: in the set's projection on its phase plane.
     PhasePlane,
     /// All states together: in the set itself.
     Exact,
@@ -23,12 +23,11 @@ impl Notion {
     /// The name of each notion, as in files and options, and its meaning.
     pub const NAMES: &[(&str, &str)] = &[
         ("hull", "each state by itself"),
-        ("phase-plane", "position and velocity of each joint together"),
+        ("phase-plane", "each position and its velocity together"),
         ("exact", "all states together"),
     ];
 
     /// Returns whether recorded points are judged, and not only each state by itself.
-    #[must_use]
     pub(crate) fn asks_points(self) -> bool {
         self != Self::Hull
     }
@@ -44,39 +43,39 @@ impl Notion {
         }
     }
 
-    /// Returns what is claimed of the recorded `states`, such as "position", in a model's `set`.
-    pub(crate) fn claim_words(self, states: &str, set: &str) -> String {
+    /// Returns what is claimed of the recorded `states`, such as "position", in a model's `set`;
+    /// `noun` is what a part is called.
+    pub(crate) fn claim_words(self, states: &str, set: &str, noun: &str) -> String {
         match self {
             Self::Hull => format!(
-                "the recorded {states} of every joint lies in the interval hull of the model's \
+                "the recorded {states} of every {noun} lies in the interval hull of the model's \
                  {set}"
             ),
             Self::PhasePlane => format!(
-                "the recorded {states} of every joint together lie in the projection of the \
-                 model's {set} on the joint's phase plane"
+                "the recorded {states} of every {noun} together lie in the projection of the \
+                 model's {set} on the {noun}'s phase plane"
             ),
             Self::Exact => {
-                format!("the recorded {states} of all joints together lie in the model's {set}")
+                format!("the recorded {states} of all {noun}s together lie in the model's {set}")
             }
         }
     }
 
-    /// Returns the notion and what it leaves open.
-    pub(crate) fn limit_words(self) -> &'static str {
+    /// Returns the notion and what it leaves open; `noun` is what a part is called.
+    pub(crate) fn limit_words(self, noun: &str) -> String {
         match self {
-            Self::Hull => {
-                "The notion is the hull, which bounds each state separately. A point inside the \
-                 hull need not be reachable."
-            }
-            Self::PhasePlane => {
-                "The notion is the phase plane, which takes position and velocity of each joint \
-                 together, and each joint by itself. States of several joints need not be \
+            Self::Hull => "The notion is the hull, which bounds each state separately. A point \
+                           inside the hull need not be reachable."
+                .into(),
+            Self::PhasePlane => format!(
+                "The notion is the phase plane, which takes position and velocity of each {noun} \
+                 together, and each {noun} by itself. States of several {noun}s need not be \
                  reachable together."
-            }
-            Self::Exact => {
-                "The notion is exact: all states at one sample are reachable together. One motion \
-                 of the model need not pass through the states of all samples."
-            }
+            ),
+            Self::Exact => "The notion is exact: all states at one sample are reachable together. \
+                            One motion of the model need not pass through the states of all \
+                            samples."
+                .into(),
         }
     }
 }

@@ -16,7 +16,6 @@ pub(crate) enum Origin {
 }
 
 impl Origin {
-    /// Returns the entry of run `index`.
     pub(crate) fn entry(&self, index: usize) -> &RunEntry {
         match self {
             Self::Source(source) => &source.runs()[index],
@@ -40,7 +39,6 @@ impl Origin {
         }
     }
 
-    /// Returns the name of run `index` for messages.
     pub(crate) fn run_name(&self, index: usize) -> PathBuf {
         match self {
             Self::Source(source) => source.run_name(index),

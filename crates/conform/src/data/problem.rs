@@ -109,7 +109,7 @@ impl Problem {
     }
 
     /// Returns the problem of another model and other settings with the same recordings, which are
-    /// not read again. What was recorded and how it was read must stay: the number of joints, the
+    /// not read again. What was recorded and how it was read must stay: the number of inputs, the
     /// kind of torque, the nominal starts and the end of the runs.
     #[must_use]
     pub fn with_setup(&self, setup: Setup) -> Self {
@@ -160,15 +160,20 @@ impl Problem {
         &self.read.sensor_noise
     }
 
-    /// Returns the number of joints n.
+    /// Returns the number of inputs n.
     #[must_use]
-    pub fn joints(&self) -> usize {
+    pub fn inputs(&self) -> usize {
         self.setup.dynamics.inputs()
     }
 
-    /// Returns the number of states and inputs of the model: 2n and n.
+    /// Returns the number of states, 2n.
+    #[must_use]
+    pub fn states(&self) -> usize {
+        self.setup.dynamics.states()
+    }
+
     pub(crate) fn shape(&self) -> Shape {
-        Shape { states: self.dynamics().states(), inputs: self.dynamics().inputs() }
+        Shape { states: self.states(), inputs: self.inputs() }
     }
 
     /// Returns what the numbers of the model are.
@@ -270,11 +275,6 @@ impl Problem {
     /// # Guarantee
     ///
     /// Outer, as [`Deviation::new`].
-    ///
-    /// # Errors
-    ///
-    /// As [`grids`](Self::grids) and [`run`](Self::run); [`Error::RunsAway`] if a nominal motion
-    /// runs away.
     pub(crate) fn deviations(&self) -> Result<&[Deviation]> {
         let Deviations { all, runaways } = self.deviations_until()?;
         match runaways.first() {
@@ -287,10 +287,6 @@ impl Problem {
 
     /// Returns the deviations of all suites, and where nominal motions run away: deviations are
     /// infinite from there on, so that no set encloses them.
-    ///
-    /// # Errors
-    ///
-    /// As [`grids`](Self::grids) and [`run`](Self::run).
     pub(crate) fn deviations_until(&self) -> Result<&Deviations> {
         if let Some(deviations) = self.deviations.get() {
             return Ok(deviations);

@@ -30,11 +30,6 @@ pub struct Recordings {
 }
 
 impl Recordings {
-    /// Reads the suites named.
-    ///
-    /// # Errors
-    ///
-    /// Every defect of every run, or an unknown suite.
     pub(super) fn read(
         reader: &SuiteReader,
         names: &[String],
@@ -74,7 +69,6 @@ impl Recordings {
         self.suites.iter().filter(is_among).map(|suite| suite.entry.name.as_str()).collect()
     }
 
-    /// Returns whether all runs were cut from one log.
     pub(crate) fn are_of_one_log(&self) -> bool {
         let mut origins = self.suites.iter().flat_map(|suite| &suite.runs).map(|run| &run.origin);
         let first = origins.next().and_then(Option::as_ref);
@@ -88,7 +82,6 @@ impl Recordings {
     }
 }
 
-/// Returns notes for the user about the choice of suites and about the source.
 fn index_notes(source: &dyn RunSource, chosen: &[SuiteEntry]) -> Vec<String> {
     let (used, all) = (chosen.iter().map(|entry| entry.runs.len()).sum::<usize>(), source.runs());
     let mut notes = Vec::new();

@@ -14,7 +14,7 @@ pub trait Residual: Debug + Send + Sync {
     fn torques(&self) -> &Torques;
 }
 
-/// What a [`Residual`] computes, for each joint.
+/// What a [`Residual`] computes, for each part.
 #[derive(Debug, Clone, Default)]
 pub struct Torques {
     /// Velocities in the middle of the time, n.

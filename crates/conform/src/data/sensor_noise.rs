@@ -23,16 +23,13 @@ pub struct SensorNoise {
 }
 
 impl SensorNoise {
-    /// Returns the radii that were given.
-    #[must_use]
     pub(crate) fn given(radius: Vec<f64>) -> Self {
         Self { radius, estimated: false }
     }
 
-    /// Estimates the noise from recordings of `joints` joints. Runs of fewer than 20 samples do not
+    /// Estimates the noise from recordings of `parts` parts. Runs of fewer than 20 samples do not
     /// count; without any other the radii are 0.
-    #[must_use]
-    pub(crate) fn estimate(recordings: &Recordings, joints: usize) -> Self {
+    pub(crate) fn estimate(recordings: &Recordings, parts: usize) -> Self {
         let runs = recordings.suites.iter().flat_map(Suite::sample);
         let of_runs: Vec<&Vec<f64>> = runs.filter_map(|run| run.noise.as_ref()).collect();
         let median = |i: usize| {
@@ -40,7 +37,7 @@ impl SensorNoise {
             deviations.sort_by(f64::total_cmp);
             deviations.get(deviations.len() / 2).copied().unwrap_or(0.0)
         };
-        let radius = (0..2 * joints).map(|i| DEVIATIONS * median(i)).collect();
+        let radius = (0..2 * parts).map(|i| DEVIATIONS * median(i)).collect();
         Self { radius, estimated: true }
     }
 }

@@ -19,7 +19,8 @@ pub enum Method {
     #[default]
     Program,
     /// By bisection of one radius after the other, the paper's way for models that are not linear.
-    /// The result depends on the order of the radii and is not jointly minimal; it is a baseline.
+    /// The result depends on the order of the radii, and other radii may cost less: it is a
+    /// baseline.
     Bisection,
 }
 
@@ -70,7 +71,7 @@ impl States {
         match (notion, self) {
             (Notion::Hull, Self::All) => "each state by itself",
             (Notion::Hull | Notion::PhasePlane, Self::Positions) => "each position by itself",
-            (Notion::PhasePlane, Self::All) => "position and velocity of each joint together",
+            (Notion::PhasePlane, Self::All) => "each position and its velocity together",
             (Notion::Exact, Self::All) => "all states together",
             (Notion::Exact, Self::Positions) => "all positions together",
         }
@@ -133,7 +134,6 @@ pub enum Weights {
 }
 
 impl Weights {
-    /// Returns the weight of each state in the cost, s.
     pub(crate) fn of_states(&self, states: usize) -> Vec<f64> {
         match self {
             Self::Unit => vec![1.0; states],
@@ -162,7 +162,7 @@ pub struct Settings {
     /// How far X0 may reach.
     #[serde(default, skip_serializing_if = "is_default")]
     pub initial_limit: InitialLimit,
-    /// Whether U is widened by the dry friction that is possible where joints may come to rest, for
+    /// Whether U is widened by the dry friction that is possible where parts may come to rest, for
     /// other motions under the same motor torque.
     #[serde(default, skip_serializing_if = "is_default")]
     pub stiction: bool,
@@ -190,18 +190,17 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Returns whether the noise of the sensors limits V or X0.
     pub(crate) fn are_limited_by_noise(&self) -> bool {
         self.noise == Noise::Fitted || self.nominal == NominalStart::Own
     }
 
-    /// Checks sizes and signs for a robot of `joints` joints.
+    /// Checks sizes and signs for a model of `inputs` inputs.
     ///
     /// # Errors
     ///
     /// [`Error::SettingCount`] and [`Error::SettingRange`], which name the setting, its value and
     /// what it may be; [`Error::Stiction`] if stiction cannot be covered.
-    pub fn validate(&self, joints: usize) -> Result<()> {
+    pub fn validate(&self, inputs: usize) -> Result<()> {
         if self.stiction && self.disturbance == Disturbance::Constant {
             return Err(Error::Stiction(
                 "friction changes during a motion, and a constant disturbance does not; let it \
@@ -209,13 +208,13 @@ impl Settings {
             ));
         }
         if let Weights::Given(weights) = &self.weights {
-            check_list("weight", weights, (2 * joints, STATES), 1e-9..=1e9)?;
+            check_list("weight", weights, (2 * inputs, STATES), 1e-9..=1e9)?;
         }
         if let Noise::Fixed(radii) = &self.noise {
-            check_list("noise radius", radii, (2 * joints, STATES), 0.0..=1e9)?;
+            check_list("noise radius", radii, (2 * inputs, STATES), 0.0..=1e9)?;
         }
         if let Some(radii) = &self.sensor_noise {
-            check_list("sensor noise radius", radii, (2 * joints, STATES), 0.0..=1e9)?;
+            check_list("sensor noise radius", radii, (2 * inputs, STATES), 0.0..=1e9)?;
         }
         self.until.map_or(Ok(()), |until| check_range("until", None, until, &(0.0..=f64::MAX)))
     }
@@ -225,14 +224,9 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// Checks the radii that are added to X0 and U, 3n.
-///
-/// # Errors
-///
-/// As [`Settings::validate`].
-pub(crate) fn check_allowance(allowance: &[f64], joints: usize) -> Result<()> {
+pub(crate) fn check_allowance(allowance: &[f64], inputs: usize) -> Result<()> {
     let order = "X0 for q, then for q̇, then U";
-    check_list("allowance", allowance, (3 * joints, order), 0.0..=1e9)
+    check_list("allowance", allowance, (3 * inputs, order), 0.0..=1e9)
 }
 
 /// The order of values of all states.

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 use std::path::Path;
 use std::sync::Arc;
 
-use reachtube_finding::Advice;
+use reachtube_finding::{Advice, Finding};
 use reachtube_reach::System;
 use reachtube_recordings::{Defect, GapLimit, ReadOptions, Run};
 use reachtube_scalar::Interval;
@@ -20,7 +20,8 @@ use crate::data::signals::Signals;
 use crate::error::{Error, Result};
 use crate::fit::group::Group;
 use crate::fit::record::FittedParameter;
-use crate::plausibility::warning::{Remark, Warning, WarningKind};
+use crate::plausibility::remark::Remark;
+use crate::result::code::Code;
 
 /// What decides a conformance besides the recordings: what drives a system along them, the system
 /// and the settings.
@@ -117,7 +118,7 @@ pub trait Drive: Debug + Send + Sync {
     ///
     /// When the compensation does not fit.
     fn input_error(&self, case: &Case) -> Result<(Vec<f64>, usize)> {
-        Ok((vec![0.0; case.joints()], 0))
+        Ok((vec![0.0; case.parts()], 0))
     }
 
     /// Returns whether a fit has chosen its parameters.
@@ -151,7 +152,7 @@ pub trait Drive: Debug + Send + Sync {
     /// state.
     fn remark(
         &self,
-        _kind: WarningKind,
+        _code: Code,
         _part: usize,
         _recorded: &dyn Fn(usize) -> [f64; 2],
     ) -> Option<Remark> {
@@ -164,8 +165,8 @@ pub trait Drive: Debug + Send + Sync {
         &self,
         _runs: Vec<Run>,
         _method: Method,
-        held_out: Option<Warning>,
-    ) -> Option<Warning> {
+        held_out: Option<Finding>,
+    ) -> Option<Finding> {
         held_out
     }
 
@@ -394,5 +395,5 @@ impl Setup {
 
 pub(crate) fn read_options(setup: &Setup) -> ReadOptions {
     let Settings { gap_limit, until, .. } = setup.settings;
-    ReadOptions { joints: Some(setup.dynamics.inputs()), gap_limit, until }
+    ReadOptions { gap_limit, until, ..ReadOptions::of(setup.dynamics.inputs()) }
 }

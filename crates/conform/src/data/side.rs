@@ -15,8 +15,6 @@ impl Side {
     /// Both sides, the upper one first.
     pub(crate) const BOTH: [Self; 2] = [Self::Upper, Self::Lower];
 
-    /// Returns 1 for the upper side and -1 for the lower one.
-    #[must_use]
     pub(crate) fn sign(self) -> f64 {
         match self {
             Self::Upper => 1.0,

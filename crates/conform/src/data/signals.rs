@@ -1,5 +1,8 @@
+use std::collections::BTreeSet;
+
 use reachtube_finding::Units;
 use reachtube_recordings::State;
+use reachtube_scalar::number::plural;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +16,8 @@ pub struct Signal {
     pub unit: String,
 }
 
-/// A part of a system: a joint of an arm, with its position, its velocity and its torque.
+/// A part of a system, whose states are looked at together: a position with its velocity, and the
+/// force that drives it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
@@ -33,8 +37,10 @@ pub struct Signals {
     pub states: Vec<Signal>,
     /// The inputs, m.
     pub inputs: Vec<Signal>,
-    /// The parts of the system, whose states are looked at together.
+    /// The parts of the system.
     pub parts: Vec<Part>,
+    /// What a part is called.
+    pub noun: String,
     /// Whose equations nominal motions follow, where they are not the model's, as a clause.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub nominal: Option<String>,
@@ -47,6 +53,13 @@ impl Signals {
         &self.states[state.index(self.inputs.len())].unit
     }
 
+    /// Names parts by their numbers, from 1, after the word for them.
+    pub(crate) fn place(&self, parts: impl Iterator<Item = usize>) -> String {
+        let parts: BTreeSet<usize> = parts.collect();
+        let numbers: Vec<String> = parts.iter().map(ToString::to_string).collect();
+        format!("{} {}", plural(parts.len(), &self.noun), numbers.join(", "))
+    }
+
     /// Returns the units of one state of each part, such as all positions.
     #[must_use]
     pub fn units_of_state(&self, at: usize) -> Units {
@@ -55,8 +68,7 @@ impl Signals {
     }
 
     /// Returns the units of the inputs.
-    #[must_use]
-    pub fn units_of_inputs(&self) -> Units {
+    pub(crate) fn units_of_inputs(&self) -> Units {
         Units::new(self.inputs.iter().map(|input| input.unit.as_str()))
     }
 }

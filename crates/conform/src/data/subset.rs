@@ -6,7 +6,6 @@ use crate::data::recordings::Recordings;
 impl Problem {
     /// Returns the problem of some of the suites, as if no other had been read: it does not depend
     /// on the others.
-    #[must_use]
     pub(crate) fn with_suites(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
         let suites = self.recordings().suites.iter().enumerate();
         let wanted = suites.filter(|(index, _)| is_wanted(*index)).map(|(_, suite)| suite.clone());

@@ -37,7 +37,6 @@ pub struct Suite {
 }
 
 impl Suite {
-    #[must_use]
     pub(crate) fn run_count(&self) -> usize {
         self.totals.count
     }
@@ -70,7 +69,6 @@ impl Suite {
         sampled(&self.runs)
     }
 
-    /// Returns whether the sample is all runs.
     pub(crate) fn is_small(&self) -> bool {
         self.totals.count <= SAMPLE
     }
@@ -92,10 +90,6 @@ pub(super) struct SuiteReader<'a> {
 impl SuiteReader<'_> {
     /// Reads the runs of a suite on all cores and folds them. The fold's size does not grow with
     /// the number of runs, except for the summaries; `progress` takes how many runs are done.
-    ///
-    /// # Errors
-    ///
-    /// Every defect of every run.
     pub(super) fn read(
         &self,
         entry: &SuiteEntry,
@@ -206,7 +200,6 @@ impl Part {
         self.is_empty = false;
     }
 
-    /// Keeps a first run that turned out to be a case of its own.
     fn keep_if_own(&self, first: Option<(usize, Run)>, kept: &KeptRuns) {
         if let (Some((index, run)), None) = (first, &self.shared) {
             kept.keep(index, run);

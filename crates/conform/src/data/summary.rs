@@ -91,7 +91,7 @@ impl RunSummary {
 /// Returns the noise that a recording shows, and at least the noise that its entry knows.
 fn noise(entry: &RunEntry, run: &Run) -> Option<Vec<f64>> {
     let shown = noise_deviations(run);
-    let known = entry.noise.as_ref().filter(|known| known.len() == 2 * run.joints);
+    let known = entry.noise.as_ref().filter(|known| known.len() == run.dimension());
     match (known, shown) {
         (Some(known), Some(shown)) => {
             Some(known.iter().zip(shown).map(|(known, shown)| known.max(shown)).collect())

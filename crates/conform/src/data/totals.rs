@@ -36,7 +36,6 @@ pub(crate) struct Totals {
 }
 
 impl Totals {
-    /// Returns the totals of one run.
     pub(crate) fn of(run: &RunSummary) -> Self {
         let sum = |value: &f64| [*value].into_iter().collect();
         let temperatures = run.condition.temperatures.iter().flatten();
@@ -54,7 +53,6 @@ impl Totals {
         }
     }
 
-    /// Returns the totals of some runs, one at least.
     pub(crate) fn of_all<'a>(runs: impl IntoIterator<Item = &'a RunSummary>) -> Option<Self> {
         runs.into_iter().map(Self::of).reduce(|mut all, run| {
             all.merge(run);
@@ -62,7 +60,6 @@ impl Totals {
         })
     }
 
-    /// Merges the totals of other runs.
     pub(crate) fn merge(&mut self, other: Self) {
         self.count += other.count;
         self.first = self.first.min(other.first);
@@ -90,7 +87,6 @@ impl Totals {
     }
 
     /// Returns the mean of the first states, 2n, rounded to nearest.
-    #[must_use]
     pub(crate) fn mean_start(&self) -> Vec<f64> {
         self.starts.iter().map(ExactSum::mean).collect()
     }
@@ -100,7 +96,6 @@ impl Totals {
         self.temperatures.first().map_or(0, |sum| sum.count() as usize)
     }
 
-    /// Returns the notes about runs, and how many other runs have some.
     pub(crate) fn run_notes(&self) -> impl Iterator<Item = String> {
         let more = self.noted - self.notes.len();
         let more = (more > 0).then(|| format!("{more} more recordings have such notes"));

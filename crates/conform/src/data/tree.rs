@@ -34,7 +34,6 @@ pub(crate) struct Leaf<'a> {
 
 impl Tree {
     /// Adds the recording at a place; returns whether the place was free.
-    #[must_use]
     pub(crate) fn insert(&mut self, place: u32, leaf: Leaf) -> bool {
         let mut digest = Sha256::new();
         digest.update([0]);
@@ -47,7 +46,6 @@ impl Tree {
     }
 
     /// Merges the tree of other recordings; returns whether all their places were free.
-    #[must_use]
     pub(crate) fn merge(&mut self, other: Self) -> bool {
         let mut filled = other.filled.into_iter();
         filled.all(|(first, (level, hash))| self.insert_subtree(first, level, hash))
@@ -55,7 +53,6 @@ impl Tree {
 
     /// Returns the hash of the whole tree, in lower-case hexadecimal; the hash of no bytes if there
     /// is no recording.
-    #[must_use]
     pub(crate) fn root(&self) -> String {
         let mut level = 0;
         let mut nodes: Vec<(u64, u8, Hash)> =

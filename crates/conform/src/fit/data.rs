@@ -53,12 +53,12 @@ impl Data {
         samples.div_ceil(MOST_SAMPLES).max(1)
     }
 
-    /// Returns the mean temperature of each joint over the cases, n, °C; `None` if it is not known
+    /// Returns the mean temperature of each part over the cases, n, °C; `None` if it is not known
     /// for all of them.
     pub(crate) fn mean_temperatures(&self) -> Option<Vec<f64>> {
         let of_track = |track: &Track| track.case.condition.temperatures.clone();
         let all = self.tracks.iter().map(of_track).collect::<Option<Vec<_>>>()?;
-        let mean = |joint: usize| all.iter().map(|own| own[joint]).sum::<f64>() / all.len() as f64;
+        let mean = |part: usize| all.iter().map(|own| own[part]).sum::<f64>() / all.len() as f64;
         Some((0..all.first()?.len()).map(mean).collect())
     }
 

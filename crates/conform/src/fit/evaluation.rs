@@ -66,7 +66,11 @@ pub(crate) struct Smallest {
 }
 
 impl FitTask<'_> {
-    pub(crate) fn joints(&self) -> usize {
+    pub(crate) fn states(&self) -> usize {
+        self.weights.len()
+    }
+
+    pub(crate) fn inputs(&self) -> usize {
         self.weights.len() / 2
     }
 
@@ -87,11 +91,6 @@ impl FitTask<'_> {
         Ok(FitModel { coefficients, motions })
     }
 
-    /// Returns the model with these numbers, ready to move.
-    ///
-    /// # Errors
-    ///
-    /// As [`model`](Self::model).
     pub(crate) fn nominal(&self, numbers: &[f64]) -> Result<NominalModel> {
         let setup = self.parameters.apply(numbers)?;
         let system = setup.dynamics.linear_system().ok_or(Error::NotLinear)?;
@@ -111,10 +110,6 @@ impl FitTask<'_> {
 
     /// Returns the nominal motion of a track at every sample, samples x N; `near` is what
     /// compensations near it share, if that is known.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::RunsAway`].
     pub(crate) fn motion(
         &self,
         NominalModel { setup, steps }: &NominalModel,
@@ -128,13 +123,13 @@ impl FitTask<'_> {
     }
 
     pub(crate) fn rows_of(&self, motion: &[f64]) -> Vec<f64> {
-        motion.chunks_exact(2 * self.joints()).step_by(self.stride).flatten().copied().collect()
+        motion.chunks_exact(self.states()).step_by(self.stride).flatten().copied().collect()
     }
 
     /// Returns the program of `model` for the tracks named. Its cost is over the samples of all
     /// recordings.
     pub(crate) fn program(&self, model: &FitModel, tracks: &[usize]) -> Program<'_> {
-        let (stride, states) = (self.stride, 2 * self.joints());
+        let (stride, states) = (self.stride, self.states());
         let mut blocks: Vec<Block> = Vec::new();
         for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
             let times = grid.times().iter().step_by(stride).copied().collect();
@@ -156,25 +151,16 @@ impl FitTask<'_> {
             let (lower, upper) = (off(Envelope::lower), off(Envelope::upper));
             blocks[track.grid].envelope.include_bounds(t as u32, &lower, &upper);
         }
-        let shape = Shape { states, inputs: self.joints() };
+        let shape = Shape { states, inputs: self.inputs() };
         Program::new((self.settings, shape), &self.weights, blocks).with_limits(self.limits.clone())
     }
 
-    /// Returns the smallest sets of `model` for the tracks named.
-    ///
-    /// # Errors
-    ///
-    /// As [`Program::solve`].
     pub(crate) fn smallest(&self, model: &FitModel, tracks: &[usize]) -> Result<Smallest> {
         self.smallest_from(model, tracks, &mut Vec::new())
     }
 
     /// Returns the smallest sets as [`smallest`](Self::smallest) does, with the rows `rows` first;
     /// they become the rows that nearly decide the sets.
-    ///
-    /// # Errors
-    ///
-    /// As [`Program::solve`].
     pub(crate) fn smallest_from(
         &self,
         model: &FitModel,
@@ -197,7 +183,7 @@ impl FitTask<'_> {
     /// Returns what a row must reach in `model`: the deviation, less the known noise.
     pub(crate) fn deviation(&self, model: &FitModel, (t, k, i, side): StepRow) -> f64 {
         let track = &self.data.tracks[t];
-        let (sample, states) = (k * self.stride, 2 * self.joints());
+        let (sample, states) = (k * self.stride, self.states());
         let nominal = model.motions[t][k * states + i];
         let known = match &self.settings.noise {
             Noise::Fixed(radii) => radii[i],
@@ -210,10 +196,6 @@ impl FitTask<'_> {
     }
 
     /// Returns the cost of the smallest sets of all tracks, as a sum over the samples of the fit.
-    ///
-    /// # Errors
-    ///
-    /// As [`model`](Self::model) and [`Program::solve`].
     pub(crate) fn cost(&self, numbers: &[f64]) -> Result<f64> {
         let tracks = self.tracks(None);
         Ok(self.smallest(&self.model(numbers, &tracks)?, &tracks)?.cost)
@@ -221,10 +203,6 @@ impl FitTask<'_> {
 
     /// Returns the cost of the smallest sets of all tracks at every sample; `None` if a nominal
     /// motion diverges.
-    ///
-    /// # Errors
-    ///
-    /// As [`model`](Self::model) and [`Program::solve`].
     pub(crate) fn whole_cost(&self, numbers: &[f64]) -> Result<Option<f64>> {
         let whole = Self { stride: 1, ..self.clone() };
         let tracks = whole.tracks(None);
@@ -235,7 +213,6 @@ impl FitTask<'_> {
         }
     }
 
-    /// Returns the tracks of all motions but `left_out`.
     pub(crate) fn tracks(&self, left_out: Option<usize>) -> Vec<usize> {
         let tracks = self.data.tracks.iter().enumerate();
         tracks.filter(|(_, track)| Some(track.motion) != left_out).map(|(t, _)| t).collect()

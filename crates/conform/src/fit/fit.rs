@@ -74,10 +74,6 @@ pub fn fit(problem: &Problem, settings: &FitSettings, progress: &dyn Progress) -
 
 /// Returns the setup that [`fit`] finds. With a given pull it leaves no motion out, and makes no
 /// record.
-///
-/// # Errors
-///
-/// As [`fit`].
 pub(crate) fn fitted_setup(
     problem: &Problem,
     settings: &FitSettings,
@@ -132,7 +128,6 @@ impl<'a> Basis<'a> {
         self.other.as_ref().unwrap_or(self.given)
     }
 
-    /// Returns the parameters of a setup.
     fn parameters(&self, setup: &Setup) -> Result<Box<dyn Parameters>> {
         let asked = Asked {
             groups: self.groups,
@@ -263,7 +258,6 @@ fn not_taken(fit: &FitTask, choice: PullChoice, steering: &Problem) -> Result<Fi
     record(fit, choice, None, [identified.clone(), identified])
 }
 
-/// Returns the record of a fit that found numbers, or that was not taken.
 fn record(
     fit: &FitTask,
     choice: PullChoice,
@@ -317,7 +311,7 @@ fn record(
         pulls: choice.tried,
         parameters: fit.parameters.describe(&numbers),
         torque: torque
-            .map(|(j, (identified, fitted))| TorquePrediction { joint: j + 1, identified, fitted })
+            .map(|(j, (identified, fitted))| TorquePrediction { part: j + 1, identified, fitted })
             .collect(),
     })
 }

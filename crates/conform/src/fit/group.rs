@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum Group {
-    /// The motor inertia of each joint and the density of each link: a link that is a body stays
+    /// The motor inertia of each part and the density of each link: a link that is a body stays
     /// one, and the mass matrix stays positive definite. Gravity stays what it is.
     Inertia,
-    /// Viscous friction v1 of each joint.
+    /// Viscous friction v1 of each part.
     Viscous,
-    /// Quadratic and cubic viscous friction v2 and v3 of each joint. The truncation error of the
+    /// Quadratic and cubic viscous friction v2 and v3 of each part. The truncation error of the
     /// model is subtracted from the input along the nominal motion.
     Cubic,
-    /// Coulomb friction of each joint, by quadrant where the quadrants differ, along the nominal
+    /// Coulomb friction of each part, by quadrant where the quadrants differ, along the nominal
     /// motion.
     Coulomb,
-    /// The change of viscous and Coulomb friction with the temperature of the joints, where every
+    /// The change of viscous and Coulomb friction with the temperature of the parts, where every
     /// recording has it; else the change of viscous friction with the order of the runs in their
     /// suite.
     WarmUp,

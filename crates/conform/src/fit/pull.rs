@@ -132,10 +132,6 @@ struct Fold<'a> {
 /// whose sets cost least in the mean once they have grown until they enclose the motion. Weaker
 /// weights than the first one that is worse are not tried. A group without which this mean is less
 /// is dropped. `limits` has what limits the sets of the other motions, for each motion.
-///
-/// # Errors
-///
-/// As [`FitTask::search`] and [`Unseen::compare`].
 pub(crate) fn choose(fit: &FitTask, limits: &[Limits], given: Option<f64>) -> Result<PullChoice> {
     let pulls = given.map_or_else(|| PULLS.to_vec(), |pull| vec![pull]);
     let started =

@@ -26,7 +26,6 @@ pub struct FitRecord {
     pub dropped: Vec<Group>,
     /// Whether the model has the fitted values. Without a given pull it keeps the identified ones
     /// where these carry over better to motions that are left out.
-    #[serde(default = "taken")]
     pub taken: bool,
     /// How the nominal model that was fitted without each motion, and its sets, carry over to that
     /// motion.
@@ -42,13 +41,8 @@ pub struct FitRecord {
     pub(crate) pulls: Vec<PullCost>,
     /// The parameters.
     pub parameters: Vec<FittedParameter>,
-    /// The errors of the input that both models predict, one per joint.
+    /// The errors of the input that both models predict, one per part.
     pub torque: Vec<TorquePrediction>,
-}
-
-/// Models of earlier versions have every fit that was made.
-fn taken() -> bool {
-    true
 }
 
 /// Gain of a group of parameters.
@@ -97,7 +91,6 @@ pub struct UnseenMotion {
 }
 
 impl UnseenMotion {
-    /// Makes the record of a motion without which a nominal motion diverges.
     pub(crate) fn runs_away(motion: String) -> Self {
         Self { motion, ..Self::default() }
     }
@@ -128,13 +121,11 @@ pub(crate) struct PullCost {
 }
 
 impl PullCost {
-    /// Returns the means for a weight.
     pub(crate) fn new(pull: f64, left_out: &[UnseenMotion]) -> Self {
         let cost = mean_of(left_out, |left| left.cost);
         Self { pull, cost, grown_cost: mean_of(left_out, |left| left.grown_cost) }
     }
 
-    /// Returns in words what fits gave, each of which has not seen one of some motions.
     pub(crate) fn in_words(&self, motions: usize) -> String {
         let cost = match self.grown_cost {
             Some(cost) => {
@@ -211,8 +202,8 @@ pub struct FittedParameter {
     pub group: Group,
     /// What it is.
     pub name: String,
-    /// The joint, from 1.
-    pub joint: usize,
+    /// The part, from 1.
+    pub part: usize,
     /// The unit of the values.
     pub unit: String,
     /// The identified value.
@@ -230,7 +221,6 @@ pub struct FittedParameter {
 impl FittedParameter {
     /// Returns whether the fit moved the value further than the recordings of the identification
     /// allow: it compensates for model error and is no measurement.
-    #[must_use]
     pub(crate) fn is_beyond_error(&self) -> bool {
         let moved = (self.fitted - self.identified).abs();
         self.standard_error.is_some_and(|error| moved > MOST_ERRORS * error)
@@ -248,12 +238,12 @@ impl FittedParameter {
     }
 }
 
-/// The error of the predicted input of one joint along the recordings, N m.
+/// The error of the predicted input of one part along the recordings, N m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TorquePrediction {
-    /// The joint, from 1.
-    pub joint: usize,
+    /// The part, from 1.
+    pub part: usize,
     /// The root mean square with the identified model.
     pub identified: f64,
     /// The root mean square with the fitted model.
@@ -269,7 +259,7 @@ mod tests {
         let of = |standard_error: Option<f64>| FittedParameter {
             group: Group::Viscous,
             name: "viscous friction".into(),
-            joint: 1,
+            part: 1,
             unit: "N m/(rad/s)".into(),
             identified: 2.0,
             standard_error,

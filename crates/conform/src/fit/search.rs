@@ -177,7 +177,6 @@ impl Search<'_> {
         Ok(Point { numbers, model, smallest })
     }
 
-    /// The cost with the pull.
     fn value(&self, point: &Point) -> f64 {
         point.smallest.cost + self.wanted.pull * size(&point.numbers)
     }
@@ -193,7 +192,6 @@ fn add_deciding(point: &Point, chosen: &mut Vec<usize>) -> Vec<usize> {
     added
 }
 
-/// What the pull weighs.
 pub(crate) fn size(numbers: &[f64]) -> f64 {
     numbers.iter().map(|x| x.abs()).sum()
 }

@@ -33,10 +33,6 @@ pub(crate) struct Slopes<'a> {
 impl<'a> Slopes<'a> {
     /// Prepares the derivatives at `numbers`, where the model is `model` and its smallest sets are
     /// `smallest`, for the parameters `free`.
-    ///
-    /// # Errors
-    ///
-    /// As [`FitTask::model`].
     pub(crate) fn new(
         fit: &'a FitTask<'a>,
         (numbers, free): (&[f64], &[usize]),
@@ -60,10 +56,6 @@ impl<'a> Slopes<'a> {
     }
 
     /// Adds the derivatives of the nominal motions of `tracks`.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::RunsAway`](crate::Error::RunsAway).
     pub(crate) fn add(&mut self, tracks: &[usize]) -> Result<()> {
         let Self { fit, here: (here, model), moved, list } = self;
         let has_near = fit.parameters.has_near();

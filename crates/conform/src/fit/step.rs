@@ -94,10 +94,6 @@ pub(crate) struct StepSolution {
 impl StepProgram<'_> {
     /// Solves the step by row generation. `rows` are the first rows, or none, and become the rows
     /// that nearly decide the answer.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Program`](crate::Error::Program).
     pub(crate) fn solve(&self, rows: &mut Vec<StepRow>) -> Result<StepSolution> {
         if rows.is_empty() {
             rows.extend(&self.smallest.deciding);
@@ -123,7 +119,6 @@ impl StepProgram<'_> {
         Layout::new(self.fit.settings, &self.program.cost, &self.program.noise_cost)
     }
 
-    /// The numbers among the unknowns.
     fn numbers_of(&self, unknowns: &[f64]) -> Vec<f64> {
         let free = self.free;
         let mut numbers = self.numbers.to_vec();
@@ -139,12 +134,12 @@ impl StepProgram<'_> {
     }
 
     fn samples(&self, track: usize) -> usize {
-        self.model.motions[track].len() / (2 * self.fit.joints())
+        self.model.motions[track].len() / self.fit.states()
     }
 
     /// The entries of E and of R in one row.
     fn reach(&self, track: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
-        let n = self.fit.joints();
+        let n = self.fit.inputs();
         let grid = self.fit.data.tracks[track].grid;
         let start = (k * 2 * n + i) * 6 * n;
         self.model.coefficients[grid][start..start + 6 * n].split_at(3 * n)
@@ -152,7 +147,7 @@ impl StepProgram<'_> {
 
     /// The derivative of a row with respect to parameter `p`.
     fn slope(&self, p: usize, (t, k, i, side): StepRow) -> f64 {
-        let states = 2 * self.fit.joints();
+        let states = self.fit.states();
         let slope = &self.slopes[p];
         let motion = side.sign() * slope.motions[t][k * states + i];
         slope.reach.as_ref().map_or(motion, |reach| {
@@ -163,7 +158,7 @@ impl StepProgram<'_> {
 
     /// The derivative of the cost of the present sets with respect to each parameter.
     fn cost_slopes(&self) -> Vec<f64> {
-        let n = self.fit.joints();
+        let n = self.fit.inputs();
         let of = |slope: &Slope| {
             let Some(reach) = &slope.reach else { return 0.0 };
             let blocks = reach.iter().zip(&self.program.parts);
@@ -263,10 +258,9 @@ impl StepProgram<'_> {
         }
     }
 
-    /// What the rows of all tracks reach at `unknowns`.
     fn reach_of(&self, unknowns: &[f64]) -> Reach {
         let (layout, moved) = (self.layout(), self.moved(unknowns));
-        let (n, centres) = (self.fit.joints(), layout.centres());
+        let (n, centres) = (self.fit.inputs(), layout.centres());
         // Derivatives of numbers that are held are not known, and not needed.
         let moved: Vec<(&Slope, f64)> =
             self.slopes.iter().zip(moved).filter(|(_, x)| *x != 0.0).collect();
@@ -302,10 +296,9 @@ impl StepProgram<'_> {
         Reach { motions, grids, noise }
     }
 
-    /// Deviation minus reach of a row.
     fn excess(&self, reach: &Reach, row: StepRow) -> f64 {
         let (t, k, i, side) = row;
-        let at = k * 2 * self.fit.joints() + i;
+        let at = k * self.fit.states() + i;
         let [centre, radius] = reach.grids[self.fit.data.tracks[t].grid][at];
         let reached = side.sign() * (reach.motions[t][at] + centre) + radius + reach.noise[i];
         self.fit.deviation(self.model, row) - reached
@@ -314,7 +307,7 @@ impl StepProgram<'_> {
     /// The worst violated row of each grid, window, state and side that is not among `known`.
     fn violated(&self, reach: &Reach, known: &[StepRow]) -> Vec<StepRow> {
         let known: HashSet<StepRow> = known.iter().copied().collect();
-        let states = self.fit.settings.states.rows(2 * self.fit.joints());
+        let states = self.fit.settings.states.rows(self.fit.states());
         let limit = TOLERANCE * self.program.scale();
         type Worst = BTreeMap<(usize, usize, usize, bool), (f64, StepRow)>;
         let take = |worst: &mut Worst, key, excess: f64, row| {

@@ -21,10 +21,6 @@ impl Unseen<'_> {
     /// Finds the sets of the other motions for `numbers`, and compares the motion with them. Also
     /// returns the rows of the motion that lie beyond these sets; `None` if a nominal motion
     /// diverges.
-    ///
-    /// # Errors
-    ///
-    /// As [`FitTask::model`], but for a nominal motion that diverges; as [`Program::solve`].
     pub(crate) fn compare(&self, numbers: &[f64]) -> Result<(UnseenMotion, Option<Missing>)> {
         let Self { whole, motion } = self;
         let name = whole.data.motions[*motion].clone();

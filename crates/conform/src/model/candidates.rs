@@ -65,7 +65,6 @@ impl Model {
         self.of_candidates(1 + others.len())
     }
 
-    /// Returns the model with bounds for the best of some candidates.
     fn of_candidates(self, candidates: usize) -> Self {
         let is_bound = self.trust.average_probability.is_some();
         let calibration =

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use reachtube_files::{json, write};
+use reachtube_finding::Finding;
 use reachtube_reach::{Hyperrectangle, LinearSystem, System};
 use reachtube_recordings::Preparation;
 use schemars::JsonSchema;
@@ -31,7 +32,7 @@ use crate::next_motion::calibration::Calibration;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::trust::Trust;
 use crate::next_motion::without_motion::LeftOut;
-use crate::plausibility::{Usefulness, Warning};
+use crate::plausibility::Usefulness;
 use crate::search::found::SearchSummary;
 use crate::sets::UncertaintySets;
 use crate::stiction::Stiction;
@@ -75,9 +76,8 @@ pub struct Model {
     /// Whether the sets were proved to enclose the recordings.
     pub verified: bool,
     /// The cost of the sets: the integral over time of Σ_i s_i times the width of the reachable set
-    /// and the noise, over all states; the mean where suites have different sets. All costs of a
-    /// file without `cost_of_samples` are sums over samples, as versions before it wrote. `None`
-    /// where a reachable set was lost.
+    /// and the noise, over all states; the mean where suites have different sets. `None` where a
+    /// reachable set was lost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(required)]
     pub cost: Option<f64>,
@@ -113,9 +113,8 @@ pub struct Model {
     pub sensor_noise: Option<SensorNoise>,
     /// Implausible results, and the most likely cause.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<Warning>,
-    /// How much the sets say about the motion of each joint; `None` in files of versions before it
-    /// was recorded.
+    pub warnings: Vec<Finding>,
+    /// How much the sets say about the motion of each part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub usefulness: Option<Usefulness>,
     /// The part of the variance of each state that the nominal motions explain, 2n; `None` if
@@ -135,13 +134,13 @@ pub struct Model {
     /// The radii that were added to the smallest X0 and U, 3n, in SI units; none if none were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub allowance: Vec<f64>,
-    /// The dry friction that U was widened for, joint by joint; none without the setting.
+    /// The dry friction that U was widened for, part by part; none without the setting.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stiction: Vec<Stiction>,
     /// The sets without each of the motions they were found on, of a linear model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeftOut>,
-    /// The joints whose motion follows the order of the runs.
+    /// The parts whose motion follows the order of the runs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trends: Vec<Trend>,
     /// The recorded points that touch the reachable set and so decide the sets, the closest first,
@@ -153,7 +152,7 @@ pub struct Model {
     /// logs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub preparation: Option<Preparation>,
-    /// The sets that hold for every run and every warmth of the joints.
+    /// The sets that hold for every run and every warmth of the parts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub any_run: Option<AnyRun>,
     /// How the nominal model was fitted, where it was.
@@ -342,9 +341,9 @@ impl Model {
         self.optimality_gap.filter(|gap| *gap > largest)
     }
 
-    /// Returns the number of joints n.
+    /// Returns the number of inputs n.
     #[must_use]
-    pub fn joints(&self) -> usize {
+    pub fn inputs(&self) -> usize {
         self.input_set.dimension()
     }
 }

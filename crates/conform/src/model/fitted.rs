@@ -6,7 +6,7 @@ use crate::fit::record::FitRecord;
 use crate::model::file::Model;
 use crate::next_motion::calibration::Calibration;
 use crate::next_motion::without_motion::LeftOut;
-use crate::plausibility::Warning;
+use crate::result::findings::plausibility::overfitted;
 
 impl Model {
     /// Returns the model with the record of how its nominal model was fitted, and a warning where
@@ -15,7 +15,7 @@ impl Model {
     pub fn with_fit(mut self, record: FitRecord) -> Self {
         let calibrated_cost = self.calibration.as_ref().and(self.cost);
         let overfit = record.overfitted(calibrated_cost);
-        self.warnings.extend(overfit.as_ref().map(Warning::from));
+        self.warnings.extend(overfit.as_ref().map(overfitted));
         // The nominal model that was fitted to all motions has seen each of them.
         if record.taken && !self.a.is_empty() && !self.left_out.is_empty() {
             self.left_out = record.leave_one_out.iter().map(LeftOut::from).collect();

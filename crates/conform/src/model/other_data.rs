@@ -98,7 +98,6 @@ impl Model {
 }
 
 impl DataRecord {
-    /// Returns the runs of all suites, where they are listed.
     fn runs(&self) -> Vec<&RunRecord> {
         self.suites.iter().flat_map(|suite| &suite.runs).collect()
     }

@@ -27,8 +27,6 @@ pub struct Provenance {
 }
 
 impl Model {
-    /// Returns what an answer about this model and the recordings of `problem` is about.
-    #[must_use]
     pub(crate) fn provenance(&self, problem: &Problem) -> Provenance {
         self.provenance_of(problem.settings().clone(), DataRecord::new(problem))
     }

@@ -77,16 +77,15 @@ impl SuiteRecord {
         self.motion.as_ref().unwrap_or(&self.name)
     }
 
-    #[must_use]
     pub(crate) fn count(&self) -> usize {
         self.run_count.unwrap_or(self.runs.len())
     }
 
-    /// Returns whether the nominal initial state is one of `joints` joints, and the runs are either
+    /// Returns whether the nominal initial state is one of `parts` parts, and the runs are either
     /// listed or counted.
-    pub(super) fn fits(&self, joints: usize) -> bool {
+    pub(super) fn fits(&self, parts: usize) -> bool {
         let fits = |start: &Vec<f64>| {
-            start.len() == 2 * joints && start.iter().all(|value| value.is_finite())
+            start.len() == 2 * parts && start.iter().all(|value| value.is_finite())
         };
         let counted = self.runs.is_empty() == self.run_count.is_some();
         counted && self.nominal_start.as_ref().is_none_or(fits)
@@ -118,7 +117,6 @@ impl DataRecord {
         Self { sha256: record.digest(), ..record }
     }
 
-    #[must_use]
     pub(crate) fn are_listed(&self) -> bool {
         self.root.is_none()
     }
@@ -130,14 +128,12 @@ impl DataRecord {
     }
 
     /// Returns the duration of the longest run, s, where runs are listed.
-    #[must_use]
     pub(crate) fn longest(&self) -> Option<f64> {
         let runs = self.suites.iter().flat_map(|suite| &suite.runs);
         runs.map(|run| run.duration).reduce(f64::max)
     }
 
     /// Returns the number of distinct motions; a suite without a motion counts as one.
-    #[must_use]
     pub(crate) fn motions(&self) -> usize {
         self.suites.iter().map(SuiteRecord::motion).collect::<BTreeSet<&str>>().len()
     }

@@ -7,20 +7,19 @@ use crate::next_motion::without_motion::LeftOut;
 
 impl Model {
     /// Returns whether the sets were proved to enclose every recording and say something about the
-    /// motion of every joint. A model is vacuous otherwise if it is proved.
+    /// motion of every part. A model is vacuous otherwise if it is proved.
     #[must_use]
     pub fn is_useful(&self) -> bool {
         self.verified && !self.is_vacuous()
     }
 
     /// Returns whether the sets were proved to enclose every recording but do not limit the
-    /// motion of some joint.
+    /// motion of some part.
     #[must_use]
     pub fn is_vacuous(&self) -> bool {
         self.verified && self.usefulness.as_ref().is_some_and(|said| !said.vacuous.is_empty())
     }
 
-    /// Returns the model with how motions lie to a model without them.
     pub(crate) fn with_left_out(self, left_out: Vec<LeftOut>) -> Self {
         Self { left_out, ..self }.sealed()
     }

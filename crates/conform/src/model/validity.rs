@@ -13,7 +13,6 @@ use crate::model::records::SuiteRecord;
 const SAME: f64 = 1e-9;
 
 impl Model {
-    /// Checks that all lists have the sizes that the robot asks for.
     fn check_sizes(&self) -> Result<(), String> {
         let n = self.signals.inputs.len();
         let is = |matrix: &[Vec<f64>], columns: usize| {
@@ -36,21 +35,22 @@ impl Model {
              does"
                 .into()
         } else if !(if is_linear { linear } else { none }) {
-            format!("a, b or drift has not the size for the {n} joints of its robot")
+            format!("a, b or drift has not the size for {n} inputs")
         } else if !sets {
             format!(
-                "initial_set, input_set or noise_set has not the size for the {n} joints of its \
-                 robot, or a negative radius"
+                "initial_set, input_set or noise_set has not the size for {n} inputs, or a \
+                 negative radius"
             )
         } else if self.data.suites.iter().any(|suite| !suite.fits(n)) {
             format!(
-                "a nominal_start is not a state of {n} joints, or the runs of a suite are neither \
-                 listed nor counted"
+                "a nominal_start is not one of {} states, or the runs of a suite are neither \
+                 listed nor counted",
+                2 * n
             )
         } else if !self.allowance.is_empty() && check_allowance(&self.allowance, n).is_err() {
             format!("its allowance is not {} radii", 3 * n)
-        } else if self.stiction.iter().any(|rest| !(1..=n).contains(&rest.joint)) {
-            format!("its stiction names a joint that is not one of {n}")
+        } else if self.stiction.iter().any(|rest| !(1..=n).contains(&rest.part)) {
+            format!("its stiction names a {} that is not one of {n}", self.signals.noun)
         } else {
             return self.settings.validate(n).map_err(|error| error.to_string());
         };

@@ -9,9 +9,9 @@ use reachtube_finding::{Finding, Severity};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
-    /// A torque that acts on a joint suddenly, as a collision's does, N m.
+    /// A torque that acts on a part suddenly, as a collision's does, N m.
     Push,
-    /// Friction of a joint that the model does not have, N m.
+    /// Friction of a part that the model does not have, N m.
     Drag,
     /// A mass at the origin of the last link's frame that the model does not have, kg.
     Payload,
@@ -30,8 +30,8 @@ pub struct Alarm {
     pub time: f64,
     /// What changed.
     pub fault: Fault,
-    /// Joint, from 1; `None` for the payload.
-    pub joint: Option<usize>,
+    /// Part, from 1; `None` for the payload.
+    pub part: Option<usize>,
     /// The number, N m or kg.
     pub value: f64,
     /// The least and the largest number without an alarm, N m or kg.
@@ -43,10 +43,10 @@ impl Alarm {
     #[must_use]
     pub fn finding(&self, signals: &Signals) -> Finding {
         let Self { time, value, range: [low, high], .. } = *self;
-        let of = |joint: usize| {
-            (signals.parts[joint - 1].name.as_str(), signals.inputs[joint - 1].unit.as_str())
+        let of = |part: usize| {
+            (signals.parts[part - 1].name.as_str(), signals.inputs[part - 1].unit.as_str())
         };
-        let (name, unit) = self.joint.map_or(("the arm", "N m"), of);
+        let (name, unit) = self.part.map_or(("the arm", "N m"), of);
         let (what, unit) = match self.fault {
             Fault::Push => (format!("a sudden torque acts on {name}"), unit),
             Fault::Drag => (format!("{name} drags"), unit),

@@ -9,7 +9,7 @@ use crate::monitor::statistics::{Range, Shape, Statistics};
 /// What is done with the samples of a motion.
 #[derive(Debug)]
 pub(crate) enum Task {
-    /// Learns how fast joints move: sums of squared velocities.
+    /// Learns how fast parts move: sums of squared velocities.
     Speeds { squares: Vec<f64>, count: u64 },
     /// Learns the ripple, by sums of products of the parts of a torque, and the mean square of the
     /// torque of 1 kg at the tip.
@@ -36,7 +36,6 @@ impl FaultWatch {
         Self { residual, statistics: Statistics::new(shape, step), task }
     }
 
-    /// Begins anew.
     pub(crate) fn clear(&mut self) {
         self.residual.clear();
         self.statistics.clear();
@@ -65,7 +64,7 @@ impl FaultWatch {
                 all.for_each(|(sums, above)| add_products(sums, above));
                 *count += 1;
                 let moving = residual.weight.iter().enumerate();
-                let moving = moving.filter(|(joint, _)| statistics.is_moving(*joint));
+                let moving = moving.filter(|(part, _)| statistics.is_moving(*part));
                 *load += moving.map(|(_, weight)| weight * weight).sum::<f64>();
             }
             Task::Ranges(ranges) => {
@@ -77,11 +76,11 @@ impl FaultWatch {
                 });
             }
             Task::Scores { ranges, largest } => {
-                let joints = ranges.len() / 2;
+                let parts = ranges.len() / 2;
                 for (index, (range, value)) in ranges.iter().zip(&statistics.values).enumerate() {
                     let (Some([low, high]), Some(value)) = (*range, *value) else { continue };
                     let score = (value - 0.5 * (low + high)).abs() / (0.5 * (high - low));
-                    let largest = &mut largest[usize::from(index >= joints)];
+                    let largest = &mut largest[usize::from(index >= parts)];
                     *largest = largest.max(score);
                 }
             }
@@ -92,7 +91,6 @@ impl FaultWatch {
     }
 }
 
-/// Adds the products of the ripple's sine, its cosine and the torque.
 fn add_products(sums: &mut [f64; 5], [torque, sine, cosine]: [f64; 3]) {
     let products = [sine * sine, sine * cosine, cosine * cosine, sine * torque, cosine * torque];
     sums.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
@@ -116,12 +114,12 @@ fn watch(
         let begins = is_outside && !outside[index];
         outside[index] = is_outside;
         if begins {
-            let (fault, joint) = match index / n {
+            let (fault, part) = match index / n {
                 0 => (Fault::Push, Some(index + 1)),
                 1 if index < 2 * n => (Fault::Drag, Some(index - n + 1)),
                 _ => (Fault::Payload, None),
             };
-            raise(Alarm { time, fault, joint, value, range });
+            raise(Alarm { time, fault, part, value, range });
         }
     }
 }

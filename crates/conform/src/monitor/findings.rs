@@ -13,7 +13,7 @@ impl Leave {
     /// Returns the value as a finding about a model with these signals.
     #[must_use]
     pub fn finding(&self, signals: &Signals) -> Finding {
-        let name = &signals.parts[self.joint - 1].name;
+        let name = &signals.parts[self.part - 1].name;
         let Self { time, window, state, excess, .. } = self;
         let side = match self.side {
             Side::Upper => "above",

@@ -7,7 +7,7 @@ const MARGIN: f64 = 1.5;
 
 /// What numbers that faults change are in healthy motion.
 ///
-/// Every other recording, from the first on, shapes the ranges: the speed from which on a joint is
+/// Every other recording, from the first on, shapes the ranges: the speed from which on a part is
 /// judged, the ripple of its torque, and the range of each number. The others scale the ranges of
 /// sudden torques by the largest factor that one of them needs, and likewise the ranges of drags
 /// and the payload. All grow by a margin of 1.5.
@@ -36,16 +36,16 @@ impl HealthyMotion {
         (2.0 / (self.scored as f64 + 1.0)).min(1.0)
     }
 
-    /// Returns the least and the largest value without an alarm: of sudden torques of the joints
+    /// Returns the least and the largest value without an alarm: of sudden torques of the parts
     /// \[N m\], then of their drags \[N m\], then of the payload \[kg\]; `None` if the recordings
-    /// move a joint too little. 2n + 1.
+    /// move a part too little. 2n + 1.
     #[must_use]
     pub fn ranges(&self) -> Vec<Option<[f64; 2]>> {
-        let joints = self.ranges.len() / 2;
+        let parts = self.ranges.len() / 2;
         let widened = |(index, range): (usize, &Option<Range>)| {
             let [low, high] = (*range)?;
             let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
-            let half = MARGIN * self.factors[usize::from(index >= joints)] * half;
+            let half = MARGIN * self.factors[usize::from(index >= parts)] * half;
             Some([centre - half, centre + half])
         };
         self.ranges.iter().enumerate().map(widened).collect()

@@ -11,11 +11,11 @@ use crate::monitor::monitor::Monitor;
 use crate::monitor::schedule::Schedule;
 use crate::monitor::statistics::{Range, Shape};
 
-/// Speed above which a joint counts as moving, over the root mean square of its speed: slower, the
+/// Speed above which a part counts as moving, over the root mean square of its speed: slower, the
 /// law of dry friction decides the torque.
 const GATE: f64 = 1.0 / 3.0;
 
-/// Root mean square of a speed below which a joint counts as resting, rad/s or m/s.
+/// Root mean square of a speed below which a part counts as resting, rad/s or m/s.
 const AT_REST: f64 = 1e-3;
 
 impl HealthyMotion {
@@ -37,7 +37,7 @@ impl HealthyMotion {
             return Err(Error::TooFewHealthy { count });
         }
         let mut monitor = Monitor::new(model, setup, schedule)?;
-        let n = model.joints();
+        let n = model.inputs();
         let shape = Shape { gate: vec![0.0; n], ripple: vec![[0.0; 2]; n], load: 1.0 };
         let mut lesson = |first: usize, shape: &Shape, task: Task| -> Result<FaultWatch> {
             monitor.begin_lesson(shape.clone(), task)?;
@@ -66,13 +66,12 @@ impl HealthyMotion {
     }
 }
 
-/// Pushes a recording into a monitor.
 fn follow(monitor: &mut Monitor, runs: &dyn RunSource, index: usize) -> Result<()> {
     let wrong = |problem: &dyn std::fmt::Display| Error::Healthy {
         name: runs.run_name(index).display().to_string(),
         problem: problem.to_string(),
     };
-    let options = ReadOptions { joints: Some(monitor.joints()), ..ReadOptions::default() };
+    let options = ReadOptions::of(monitor.inputs());
     let run = runs.read(index, &options).map_err(|defects| match defects.first() {
         Some(defect) => wrong(defect),
         None => wrong(&"it cannot be read"),
@@ -85,7 +84,7 @@ fn follow(monitor: &mut Monitor, runs: &dyn RunSource, index: usize) -> Result<(
     Ok(())
 }
 
-/// Returns the speed from which on each joint is judged.
+/// Returns the speed from which on each part is judged.
 fn gates(task: &Task) -> Vec<f64> {
     let Task::Speeds { squares, count } = task else { return Vec::new() };
     let gate = |square: &f64| {
@@ -95,10 +94,10 @@ fn gates(task: &Task) -> Vec<f64> {
     squares.iter().map(gate).collect()
 }
 
-/// Returns the ripple of each joint by least squares, and the mean square of the weight's torque.
+/// Returns the ripple of each part by least squares, and the mean square of the weight's torque.
 fn ripple(task: &Task) -> (Vec<[f64; 2]>, f64) {
     let Task::Ripple { products, load, count } = task else { return (Vec::new(), 1.0) };
-    let of_joint = |[ss, sc, cc, sy, cy]: &[f64; 5]| {
+    let of_part = |[ss, sc, cc, sy, cy]: &[f64; 5]| {
         let determinant = ss * cc - sc * sc;
         if determinant <= 1e-6 * ss * cc {
             return [0.0; 2];
@@ -106,5 +105,5 @@ fn ripple(task: &Task) -> (Vec<[f64; 2]>, f64) {
         [(cc * sy - sc * cy) / determinant, (ss * cy - sc * sy) / determinant]
     };
     let load = load / (*count).max(1) as f64;
-    (products.iter().map(of_joint).collect(), if load > 0.0 { load } else { 1.0 })
+    (products.iter().map(of_part).collect(), if load > 0.0 { load } else { 1.0 })
 }

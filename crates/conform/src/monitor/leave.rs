@@ -11,8 +11,8 @@ pub struct Leave {
     pub time: f64,
     /// Time of the window's first sample, s.
     pub window: f64,
-    /// Joint, from 1.
-    pub joint: usize,
+    /// Part, from 1.
+    pub part: usize,
     /// The state.
     pub state: State,
     /// The side of the set.

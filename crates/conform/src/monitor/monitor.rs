@@ -107,7 +107,7 @@ impl Monitor {
     pub fn new(model: &Model, setup: Setup, schedule: Schedule) -> Result<Self> {
         let [steps, every] = schedule.steps()?;
         let system = setup.dynamics().linear_system().ok_or(Error::NotLinear)?;
-        let (n, settings, step) = (model.joints(), setup.settings(), schedule.step);
+        let (n, settings, step) = (model.inputs(), setup.settings(), schedule.step);
         let times = TimeGrid::uniform(step, steps + 1);
         let propagation = Propagation::new(system, &times)?;
         let input_gains = settings.disturbance.input_gains(&propagation);
@@ -195,7 +195,6 @@ impl Monitor {
         self.begin_task(shape, task)
     }
 
-    /// Returns what was learnt.
     pub(crate) fn end_lesson(&mut self) -> Option<FaultWatch> {
         self.judge.faults.take()
     }
@@ -207,12 +206,10 @@ impl Monitor {
         Ok(())
     }
 
-    /// Returns the number of joints.
-    pub(crate) fn joints(&self) -> usize {
+    pub(crate) fn inputs(&self) -> usize {
         self.judge.before.len()
     }
 
-    /// Returns the time between samples, s.
     fn step(&self) -> f64 {
         self.judge.sets.grid.times.times().get(1).copied().unwrap_or(0.0)
     }
@@ -264,7 +261,6 @@ impl Judge {
         self.sets.rows * self.windows.len()
     }
 
-    /// Judges a sample, whose input was evaluated.
     fn take(&mut self, sample: &Sample) {
         let Self { sets, nominal, windows, before, leaves, progress, .. } = self;
         for window in windows.iter_mut() {
@@ -309,13 +305,11 @@ impl Progress {
         Self { totals: Totals::default(), last, used, largest, drift }
     }
 
-    /// Begins a sample.
     fn begin(&mut self) {
         self.totals.samples += 1;
         self.used.copy_from_slice(&self.last);
     }
 
-    /// Takes what a window found at the sample.
     fn take(&mut self, window: &Window, (rows, outside): (u64, u64)) {
         self.totals.rows += rows;
         self.totals.outside += outside;
@@ -326,7 +320,6 @@ impl Progress {
         }
     }
 
-    /// Takes a window that ends.
     fn end(&mut self, window: &Window) {
         self.totals.windows += 1;
         let weight = DRIFT_WEIGHT.max(1.0 / self.totals.windows as f64);

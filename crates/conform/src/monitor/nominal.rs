@@ -18,10 +18,6 @@ pub(crate) struct LiveNominal {
 
 impl LiveNominal {
     /// Prepares the correction of a model; `None` if its input is the recorded one.
-    ///
-    /// # Errors
-    ///
-    /// As [`Drive::compensation`](crate::data::setup::Drive::compensation).
     pub(crate) fn new(setup: &Setup, system: &LinearSystem, step: f64) -> Result<Option<Self>> {
         let Setup { drive, dynamics, condition, .. } = setup;
         let condition = condition.clone().unwrap_or_else(Condition::first);

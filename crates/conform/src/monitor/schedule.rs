@@ -8,7 +8,7 @@ const OVERLAP: f64 = 4.0;
 /// The longest time between two samples, in steps: as recordings at a fixed rate may have.
 const LONGEST_GAP: f64 = 1.9;
 
-/// Most samples of a window: their matrices take 2 kB each for six joints.
+/// Most samples of a window: their matrices take 2 kB each for six parts.
 const MOST_SAMPLES: f64 = 1e5;
 
 /// When the windows of a monitor begin, and how long they are.

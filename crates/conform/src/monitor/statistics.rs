@@ -1,4 +1,4 @@
-//! Numbers that faults change: sudden torques, drags of joints and a payload.
+//! Numbers that faults change: sudden torques, drags of parts and a payload.
 
 use crate::data::residual::Torques;
 
@@ -15,12 +15,12 @@ const PRIOR: f64 = 0.1;
 /// What statistics take from healthy motion.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Shape {
-    /// The speed above which a joint counts as moving, n; infinite for a joint that hardly moves.
+    /// The speed above which a part counts as moving, n; infinite for a part that hardly moves.
     pub gate: Vec<f64>,
     /// The ripple of the torque over the motor torque, by the sine and the cosine of the motor's
     /// angle, n.
     pub ripple: Vec<[f64; 2]>,
-    /// The mean square of the torque of 1 kg at the tip on moving joints, (N m)².
+    /// The mean square of the torque of 1 kg at the tip on moving parts, (N m)².
     pub load: f64,
 }
 
@@ -30,18 +30,18 @@ pub(crate) type Range = [f64; 2];
 /// The torque and the two parts of the ripple.
 pub(crate) type Parts = [f64; 3];
 
-/// Sudden torques of the joints, then their drags, then the payload.
+/// Sudden torques of the parts, then their drags, then the payload.
 #[derive(Debug)]
 pub(crate) struct Statistics {
     pub shape: Shape,
     step: f64,
-    /// For how many samples each joint has moved, n.
+    /// For how many samples each part has moved, n.
     moved: Vec<usize>,
     /// Means over the time before, n.
     means: Vec<Parts>,
-    /// What is above the means, n; `None` if a joint has not moved for long enough.
+    /// What is above the means, n; `None` if a part has not moved for long enough.
     pub above: Vec<Option<Parts>>,
-    /// Sums for each joint, by which its drag is estimated: of 1, of the torque along the motion,
+    /// Sums for each part, by which its drag is estimated: of 1, of the torque along the motion,
     /// and of the weight along the motion, n.
     sums: Vec<Parts>,
     /// The sums of the squared weight, and of the weight times the torque.
@@ -65,7 +65,6 @@ impl Statistics {
         }
     }
 
-    /// Forgets all samples.
     pub(crate) fn clear(&mut self) {
         self.moved.fill(0);
         self.sums.fill([0.0; 3]);
@@ -74,11 +73,10 @@ impl Statistics {
         self.values.fill(None);
     }
 
-    pub(crate) fn is_moving(&self, joint: usize) -> bool {
-        self.moved[joint] > 0
+    pub(crate) fn is_moving(&self, part: usize) -> bool {
+        self.moved[part] > 0
     }
 
-    /// Takes the torques of a sample.
     pub(crate) fn take(&mut self, residual: &Torques) {
         let n = self.moved.len();
         let part = self.step / MEMORY;
@@ -102,13 +100,12 @@ impl Statistics {
         self.estimate();
     }
 
-    /// Returns the torque without the ripple.
-    fn steady(&self, joint: usize, [torque, sine, cosine]: Parts) -> f64 {
-        let [a, b] = self.shape.ripple[joint];
+    fn steady(&self, part: usize, [torque, sine, cosine]: Parts) -> f64 {
+        let [a, b] = self.shape.ripple[part];
         torque - a * sine - b * cosine
     }
 
-    /// Compares the parts of a joint with their means over the time before, and takes them in.
+    /// Compares the torque of a part with its mean over the time before, and takes it in.
     fn compare(&mut self, j: usize, parts: Parts) {
         let moved = self.moved[j];
         let before = (BEFORE / self.step).round().max(1.0);

@@ -48,22 +48,21 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    pub(crate) fn new(joints: usize) -> Self {
-        let zeros = || vec![0.0; 2 * joints];
+    pub(crate) fn new(parts: usize) -> Self {
+        let zeros = || vec![0.0; 2 * parts];
         Self {
             sample: None,
             begin: 0.0,
             is_left: false,
-            nominal: Solution::new(&IntervalVector::from_element(2 * joints, Interval::ZERO)),
+            nominal: Solution::new(&IntervalVector::from_element(2 * parts, Interval::ZERO)),
             corrected: [zeros(), zeros()],
             runs_away: false,
-            input: vec![0.0; joints],
+            input: vec![0.0; parts],
             used: zeros(),
             signed: zeros(),
         }
     }
 
-    /// Opens the window at a measured sample.
     pub(crate) fn open(&mut self, sample: &Sample) {
         (self.sample, self.begin, self.is_left) = (Some(0), sample.time, false);
         self.nominal.restart(sample.state());
@@ -72,7 +71,6 @@ impl Window {
         self.used.fill(0.0);
     }
 
-    /// Advances the nominal motion by one sample under `input`.
     pub(crate) fn advance(&mut self, sets: &Sets, live: Option<&mut LiveNominal>, input: &[f64]) {
         let Some(sample) = &mut self.sample else { return };
         self.input.copy_from_slice(input);
@@ -123,7 +121,7 @@ impl Window {
             outside(Leave {
                 time: measured.time,
                 window: self.begin,
-                joint: state.joint + 1,
+                part: state.part + 1,
                 state,
                 side,
                 value,
@@ -153,13 +151,11 @@ impl Window {
 }
 
 impl Sets {
-    /// Computes the sets over a window of some steps.
     pub(crate) fn new(grid: Grid, sets: UncertaintySets, rows: usize) -> Self {
         let strand = Strand::on_grid(&grid, &sets);
         Self { grid, strand, sets, rows }
     }
 
-    /// Returns the last sample of a window.
     pub(crate) fn last(&self) -> usize {
         self.grid.times.len() - 1
     }

@@ -28,10 +28,6 @@ pub struct AnyRun {
 
 impl AnyRun {
     /// Finds the sets for a linear model; `None` if friction does not depend on the run.
-    ///
-    /// # Errors
-    ///
-    /// As [`conform`](crate::conform).
     pub(crate) fn new(problem: &Problem) -> Result<Option<Self>> {
         let setup = problem.setup();
         if !setup.differs_by_run() || setup.dynamics.linear_system().is_none() {

@@ -2,7 +2,6 @@
 
 /// Returns the one-sided Clopper-Pearson upper bound of a probability at confidence 1 - β after
 /// `hits` in `trials`: the p at which that few hits have probability β.
-#[must_use]
 pub(crate) fn clopper_pearson(trials: usize, hits: usize, beta: f64) -> f64 {
     if hits >= trials {
         return 1.0;
@@ -20,7 +19,6 @@ pub(crate) fn clopper_pearson(trials: usize, hits: usize, beta: f64) -> f64 {
 /// `support` are of support is violated by the next one with probability at most ε.
 ///
 /// 1 - ε is the root in (0, 1) of β/(N+1) Σ_{m=k}^{N} C(m,k) t^{m-k} = C(N,k) t^{N-k}.
-#[must_use]
 pub(crate) fn scenario_bound(scenarios: usize, support: usize, beta: f64) -> f64 {
     let (n, k) = (scenarios, support);
     if k >= n {

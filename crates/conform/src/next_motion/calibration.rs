@@ -46,7 +46,6 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Returns the motions that were held out.
     pub(crate) fn held_out(&self) -> impl Iterator<Item = &str> {
         self.gauges.iter().map(|gauge| gauge.motion.as_str())
     }
@@ -129,10 +128,6 @@ pub(crate) fn calibrate(
 
 /// Returns the problem of the motions that the settings do not hold out; `None` if they hold
 /// none out.
-///
-/// # Errors
-///
-/// As [`calibrate`].
 pub(crate) fn without_held_out(problem: &Problem) -> Result<Option<Problem>> {
     if problem.settings().calibrate.is_empty() {
         return Ok(None);
@@ -183,7 +178,6 @@ fn no_factor(motion: &str, input_only: bool) -> String {
     )
 }
 
-/// Returns the gauge of the suites that are marked under the sets of a linear model.
 fn linear_gauge(
     problem: &Problem,
     program: &Program,

@@ -24,12 +24,8 @@ pub struct Growth {
 
 impl Growth {
     /// Computes the growth for rows whose largest excess in each state is `excess`, 2n.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::deviations`].
     pub(crate) fn new(problem: &Problem, sets: &UncertaintySets, excess: &[f64]) -> Result<Self> {
-        let (positions, velocities) = excess.split_at(problem.joints());
+        let (positions, velocities) = excess.split_at(problem.inputs());
         let largest = |excess: &[f64]| excess.iter().copied().fold(0.0, f64::max);
         let [initial_set, input_set, both_sets] = match problem.dynamics().linear_system() {
             None => [None; 3],

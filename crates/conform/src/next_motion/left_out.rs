@@ -39,10 +39,6 @@ pub(crate) struct LeftOutMotions {
 /// their reachable set decides nothing, and without it they are the smallest still. `rows` are the
 /// rows of the program that were generated for these sets; each of the other programs begins with
 /// the rows that nearly decide the sets.
-///
-/// # Errors
-///
-/// As [`Problem::run`]; when sizes do not fit, or the job is cancelled.
 pub(crate) fn leave_each_out(
     problem: &Problem,
     program: &Program,
@@ -103,10 +99,6 @@ pub(crate) fn leave_each_out(
 
 /// Finds the sets of the other motions of a linear model, and compares `motion` with them. Returns
 /// its rows that lie beyond them too; `None` if the program could not be solved.
-///
-/// # Errors
-///
-/// As [`Problem::run`]; [`Error::NotLinear`](crate::Error::NotLinear).
 pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<(LeftOut, Option<Missing>)> {
     let motions = Motions::new(problem.recordings());
     let suites = 0..problem.recordings().suites.len();
@@ -120,7 +112,6 @@ pub(crate) fn leave_out(problem: &Problem, motion: &str) -> Result<(LeftOut, Opt
 }
 
 impl Without<'_> {
-    /// Returns the program with the rows of some suites alone.
     fn rows<'p>(&self, program: &Program<'p>, of: impl Fn(usize) -> bool) -> Result<Program<'p>> {
         Ok(match self.problem.dynamics().linear_system() {
             Some(_) => {
@@ -160,7 +151,6 @@ impl Without<'_> {
         Ok(samples * problem.settings().states.rows(problem.shape().states))
     }
 
-    /// Returns the program of each of the motion's suites.
     fn own<'p>(&self, program: &Program<'p>) -> Result<Vec<Program<'p>>> {
         let own = (0..self.suites.len()).filter(|suite| self.suites[*suite]);
         own.map(|suite| self.rows(program, |other| other == suite)).collect()

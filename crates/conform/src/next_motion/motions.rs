@@ -39,7 +39,6 @@ impl<'a> Motions<'a> {
         moving
     }
 
-    /// Returns the motion of a suite that counts.
     pub(crate) fn of_named_suite(&self, suite: &str) -> Option<&'a str> {
         self.of_suites.iter().find(|(name, _)| *name == suite).map(|(_, motion)| *motion)
     }
@@ -54,7 +53,6 @@ impl<'a> Motions<'a> {
         Self { of_suites: entries().map(motion).collect(), are_named }
     }
 
-    /// Returns the motion of the suite that counts at `index`.
     pub(crate) fn of_suite(&self, index: usize) -> &'a str {
         self.of_suites[index].1
     }
@@ -66,7 +64,6 @@ impl<'a> Motions<'a> {
         motions.filter(|motion| seen.insert(*motion)).collect()
     }
 
-    /// Returns the number of distinct motions.
     pub(crate) fn count(&self) -> usize {
         self.distinct().len()
     }
@@ -76,7 +73,6 @@ impl<'a> Motions<'a> {
         suites.filter_map(|suite| self.of_named_suite(suite)).collect::<BTreeSet<_>>().len()
     }
 
-    /// Returns the distinct motions of some suites, named one by one, that `is_asked`.
     pub(crate) fn among<'s>(
         &self,
         suites: impl Iterator<Item = &'s str>,

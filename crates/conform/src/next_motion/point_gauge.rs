@@ -24,10 +24,6 @@ const ROUNDS: usize = 60;
 /// # Guarantee
 ///
 /// Descriptive, in floating point, and to the tolerance of the search for points.
-///
-/// # Errors
-///
-/// As [`Claim::judge`](crate::claim::claim::Claim::judge).
 pub(crate) fn point_gauge(
     problem: &Problem,
     rows: f64,
@@ -55,10 +51,6 @@ pub(crate) fn point_gauge(
 
 /// Finds the sets of the other motions of a linear model by the notion of the problem, and compares
 /// the points of `motion` with them.
-///
-/// # Errors
-///
-/// As [`conform`](crate::conform()).
 pub(crate) fn leave_points_out(problem: &Problem, motion: &str) -> Result<LeftOut> {
     let motions = Motions::new(problem.recordings());
     let [own, others] = [true, false]

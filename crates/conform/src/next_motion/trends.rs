@@ -9,10 +9,10 @@ use crate::data::summary::RunSummary;
 const LEAST_CORRELATION: f64 = 0.7;
 
 /// Standard deviations of the rank correlation of unrelated numbers, 1/√(runs - 1), that a trend
-/// must exceed: one joint in a hundred does by chance.
+/// must exceed: one part in a hundred does by chance.
 const DEVIATIONS: f64 = 2.6;
 
-/// A joint whose motion follows the order of the runs of a suite: the robot changed while it was
+/// A part whose motion follows the order of the runs of a suite: the robot changed while it was
 /// recorded, for example by warming up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -21,9 +21,9 @@ pub struct Trend {
     pub suite: String,
     /// Number of its runs that were compared: all, or 256 of more.
     pub runs: usize,
-    /// The joint, from 1.
-    pub joint: usize,
-    /// Spearman's rank correlation of the joint's last position with the order of the runs.
+    /// The part, from 1.
+    pub part: usize,
+    /// Spearman's rank correlation of the part's last position with the order of the runs.
     pub correlation: f64,
     /// The largest difference of these positions, rad or m.
     pub range: f64,
@@ -33,10 +33,10 @@ pub struct Trend {
 /// last sample that was kept of all runs of a suite; the order is the index's.
 pub(crate) fn trends(problem: &Problem) -> Vec<Trend> {
     let suites = problem.recordings().suites.iter().filter(|suite| suite.shared.is_some());
-    suites.flat_map(|suite| of_suite(suite, problem.joints())).collect()
+    suites.flat_map(|suite| of_suite(suite, problem.inputs())).collect()
 }
 
-fn of_suite(suite: &Suite, joints: usize) -> Vec<Trend> {
+fn of_suite(suite: &Suite, parts: usize) -> Vec<Trend> {
     let mut runs: Vec<&RunSummary> = suite.sample().collect();
     runs.sort_by_key(|run| run.condition.place);
     let count = runs.len();
@@ -46,8 +46,8 @@ fn of_suite(suite: &Suite, joints: usize) -> Vec<Trend> {
         return Vec::new();
     }
     let least = LEAST_CORRELATION.max(DEVIATIONS / ((count - 1) as f64).sqrt());
-    let of_joint = |joint: usize| {
-        let position = |run: &&RunSummary| run.marks.state(last)[joint];
+    let of_part = |part: usize| {
+        let position = |run: &&RunSummary| run.marks.state(last)[part];
         let positions: Vec<f64> = runs.iter().map(position).collect();
         let correlation = rank_correlation(&positions);
         let extreme = |pick: fn(f64, f64) -> f64| positions.iter().copied().reduce(pick);
@@ -55,12 +55,12 @@ fn of_suite(suite: &Suite, joints: usize) -> Vec<Trend> {
         (correlation.abs() >= least).then(|| Trend {
             suite: suite.entry.name.clone(),
             runs: count,
-            joint: joint + 1,
+            part: part + 1,
             correlation,
             range,
         })
     };
-    (0..joints).filter_map(of_joint).collect()
+    (0..parts).filter_map(of_part).collect()
 }
 
 /// Returns Spearman's correlation of values with their order; 0 if they are all the same.

@@ -52,8 +52,7 @@ pub struct Trust {
     pub confidence: f64,
     /// How the bound is made and what it assumes.
     pub basis: String,
-    /// The kind of the bound; `None` if there is none, and in files of versions before it was
-    /// recorded.
+    /// The kind of the bound; `None` if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<TrustKind>,
 }
@@ -95,7 +94,6 @@ impl Trust {
 
     /// Returns the statement about sets that are not the smallest, `gap` above the program's bound:
     /// there is none, because the scenario bound holds for an optimum only.
-    #[must_use]
     pub(crate) fn without_optimum(recordings: &Recordings, gap: f64) -> Self {
         let motions = Motions::new(recordings);
         let basis = format!(
@@ -107,7 +105,6 @@ impl Trust {
 
     /// Returns that there is no guarantee, because the nominal model was chosen for these motions:
     /// the scenario bound counts what decides the sets only.
-    #[must_use]
     pub(crate) fn of_fitted_nominal(recordings: &Recordings) -> Self {
         let basis = "no scenario bound: the nominal model was fitted to the same motions";
         Self::unknown(Motions::new(recordings).count(), basis.into())
@@ -115,7 +112,6 @@ impl Trust {
 
     /// Returns that there is no guarantee for sets that were widened by what motions ask for that
     /// are among the recordings.
-    #[must_use]
     pub(crate) fn with_allowance(recordings: &Recordings) -> Self {
         let basis = "no scenario bound: it holds for the smallest sets only, and these were \
                      widened by an allowance for motions left out";
@@ -129,7 +125,6 @@ impl Trust {
     /// motions. Each of n + 1 exchangeable motions is that one with probability at most 1/(n + 1).
     /// For independent motions, the probability given the held-out ones is above ε with probability
     /// at most (1 - ε)^n, which is the hold-out bound without a violation.
-    #[must_use]
     pub(crate) fn of_calibration(
         problem: &Problem,
         calibration: &Calibration,
@@ -227,7 +222,6 @@ impl Trust {
     }
 
     /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
-    #[must_use]
     pub(crate) fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
         let motions = Motions::independent(recordings);
         if motions.count() == 0 {
@@ -261,7 +255,6 @@ impl Trust {
         Self::unknown(1, basis)
     }
 
-    /// Returns that there is no guarantee, and why.
     fn unknown(motions: usize, basis: String) -> Self {
         Self {
             motions,

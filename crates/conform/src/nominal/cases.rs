@@ -36,10 +36,6 @@ impl Problem {
 
     /// Hands each case of suite `index` to `visit`, on all cores, without keeping it; returns the
     /// answers in the order of the cases.
-    ///
-    /// # Errors
-    ///
-    /// As [`run`](Self::run), and the errors of `visit`.
     pub(crate) fn cases_of<T: Send>(
         &self,
         index: usize,
@@ -53,10 +49,6 @@ impl Problem {
 
     /// Hands each case of a suite with its recorded inputs to `visit`, on all cores; a case is one
     /// run when `by_run`, or when the runs of the suite do not share their inputs.
-    ///
-    /// # Errors
-    ///
-    /// As [`run`](Self::run), and the errors of `visit`.
     pub(crate) fn recorded_cases_of<T: Send>(
         &self,
         suite: &Suite,
@@ -117,10 +109,6 @@ impl Problem {
 
     /// Hands each case of suite `index` to `visit` as [`cases_of`](Self::cases_of) does, and where
     /// its nominal motion diverges, if it does.
-    ///
-    /// # Errors
-    ///
-    /// As [`cases_of`](Self::cases_of), but no error if a linear model diverges.
     pub(crate) fn cases_until<T: Send>(
         &self,
         index: usize,

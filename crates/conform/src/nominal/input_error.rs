@@ -14,12 +14,8 @@ pub(crate) struct InputError {
 
 impl InputError {
     /// Returns the root mean square of the input minus what the recorded motions need, m.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
     pub(crate) fn of_problem(problem: &Problem) -> Result<Vec<f64>> {
-        let mut all = Self::none(problem.joints());
+        let mut all = Self::none(problem.inputs());
         for (index, suite) in problem.recordings().suites.iter().enumerate() {
             let of = |case: Case| Self::of_case(problem.setup(), &case);
             let parts = problem.recorded_cases_of(suite, index, problem.differs_by_run(), of)?;
@@ -28,11 +24,6 @@ impl InputError {
         Ok(all.root_mean_square())
     }
 
-    /// Returns the same for some cases with their recorded inputs.
-    ///
-    /// # Errors
-    ///
-    /// As [`Drive::input_error`](crate::data::setup::Drive::input_error).
     pub(crate) fn of_cases<'c>(
         setup: &Setup,
         cases: impl IntoIterator<Item = &'c Case>,

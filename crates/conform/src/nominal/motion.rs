@@ -20,10 +20,6 @@ pub(crate) struct NominalMotion {
 
 /// Simulates the nominal motion of a case from its recorded inputs, less what is compensated;
 /// `steps` discretise a linear model over the case's grid.
-///
-/// # Errors
-///
-/// [`Error::RunsAway`](crate::Error::RunsAway).
 pub(crate) fn motion(
     system: &System,
     case: &Case,
@@ -67,7 +63,7 @@ fn linear(
     steps: &LinearSteps,
     mut correct: impl FnMut(usize, &[f64], &mut [f64]),
 ) -> (NominalMotion, Option<Runaway>) {
-    let (n, samples) = (case.joints(), case.grid.len());
+    let (n, samples) = (case.parts(), case.grid.len());
     let mut inputs = case.inputs.to_vec();
     let mut states = vec![0.0; samples * 2 * n];
     states[..2 * n].copy_from_slice(&case.start);
@@ -94,7 +90,7 @@ fn nonlinear(
     case: &Case,
     mut correct: impl FnMut(usize, &[f64], &mut [f64]),
 ) -> Result<NominalMotion> {
-    let (n, times) = (case.joints(), case.grid.times());
+    let (n, times) = (case.parts(), case.grid.times());
     let substeps = substeps(&mut *system.slopes(), case, &case.start);
     let (mut field, mut x) = (system.field(), system.lift(&case.start));
     let mut ensemble = Ensemble::<f64>::new(x.len()).bounded_by(BOUND);

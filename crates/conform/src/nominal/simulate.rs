@@ -14,10 +14,6 @@ pub(crate) const BOUND: f64 = 1e4;
 
 /// Simulates a model along a case from its start under its inputs, without any uncertainty: samples
 /// x N, unrounded.
-///
-/// # Errors
-///
-/// [`Error::RunsAway`].
 pub(crate) fn nominal(system: &dyn Nonlinear, case: &Case) -> Result<Vec<f64>> {
     let start = case.start.clone();
     let substeps = substeps(&mut *system.slopes(), case, &start);
@@ -27,8 +23,8 @@ pub(crate) fn nominal(system: &dyn Nonlinear, case: &Case) -> Result<Vec<f64>> {
 
 /// Returns the number of Runge-Kutta steps from one sample to the next.
 pub(crate) fn substeps(slopes: &mut dyn Slopes, case: &Case, start: &[f64]) -> usize {
-    let rest = vec![0.0; case.joints()];
-    let (a, _) = slopes.at(start, case.inputs.get(..case.joints()).unwrap_or(&rest));
+    let rest = vec![0.0; case.parts()];
+    let (a, _) = slopes.at(start, case.inputs.get(..case.parts()).unwrap_or(&rest));
     let norm = a.row_iter().map(|row| row.lp_norm(1)).fold(0.0, f64::max);
     (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
 }

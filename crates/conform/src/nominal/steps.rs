@@ -27,7 +27,6 @@ pub(crate) struct LinearSteps {
 impl LinearSteps {
     /// Discretises `system` over the spans between `times` (s). Spans that differ by less than a
     /// picosecond share a map.
-    #[must_use]
     pub(crate) fn new(system: &LinearSystem, times: &[f64]) -> Self {
         let (states, inputs) = (system.states(), system.inputs());
         let (mut maps, mut known) = (Vec::new(), HashMap::new());
@@ -53,7 +52,6 @@ impl LinearSteps {
     /// `samples` samples: as a [`Block`](crate::program::Block) has them, but rounded to nearest,
     /// and exact for spans of one length only. A disturbance that is measurable counts as one that
     /// is constant over samples.
-    #[must_use]
     pub(crate) fn coefficients(&self, samples: usize, stride: usize, constant: bool) -> Vec<f64> {
         let (states, inputs) = (self.states, self.inputs);
         let mut coefficients = Vec::with_capacity(samples.div_ceil(stride) * states * 6 * inputs);

@@ -1,9 +1,10 @@
+use reachtube_finding::Finding;
 use reachtube_recordings::Run;
 
 use crate::data::problem::Problem;
 use crate::error::Result;
 use crate::next_motion::calibration::{Calibration, Gauge};
-use crate::plausibility::warning::Warning;
+use crate::result::findings::plausibility::of_held_out;
 
 /// Number of runs that are looked at, at most.
 const RUNS: usize = 8;
@@ -13,24 +14,15 @@ const LARGE_FACTOR: f64 = 2.0;
 
 /// Returns what most likely makes an answer implausible: what the drive of the model finds in the
 /// recordings, or a calibration that scaled the sets by much.
-///
-/// # Errors
-///
-/// As [`Problem::run`].
 pub(super) fn likely_cause(
     problem: &Problem,
     calibration: Option<&Calibration>,
-) -> Result<Option<Warning>> {
+) -> Result<Option<Finding>> {
     let scaled = calibration.filter(|found| found.factor >= LARGE_FACTOR).map(scaled_by);
     let runs = first_runs(problem)?;
     Ok(problem.setup().drive.cause(runs, problem.settings().method, scaled))
 }
 
-/// Returns the first run of some of the problem's suites.
-///
-/// # Errors
-///
-/// As [`Problem::run`].
 fn first_runs(problem: &Problem) -> Result<Vec<Run>> {
     let suites = &problem.recordings().suites;
     let stride = suites.len().div_ceil(RUNS).max(1);
@@ -39,8 +31,8 @@ fn first_runs(problem: &Problem) -> Result<Vec<Run>> {
 }
 
 /// Reports which motion that was held out made the sets as large as they are.
-fn scaled_by(Calibration { fitted, gauges, factor, .. }: &Calibration) -> Warning {
+fn scaled_by(Calibration { fitted, gauges, factor, .. }: &Calibration) -> Finding {
     let far = |a: &&Gauge, b: &&Gauge| a.gauge.total_cmp(&b.gauge);
     let motion = gauges.iter().max_by(far).map_or("", |gauge| gauge.motion.as_str());
-    Warning::of_held_out(motion, fitted, *factor)
+    of_held_out(motion, fitted, *factor)
 }

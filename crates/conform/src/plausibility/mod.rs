@@ -3,12 +3,12 @@
 
 mod causes;
 mod nominal_fit;
+pub(crate) mod remark;
 mod usefulness;
-pub(crate) mod warning;
 mod warnings;
 
 pub(crate) use nominal_fit::NominalFit;
-pub use usefulness::{JointWidth, Usefulness};
+pub use remark::Remark;
+pub use usefulness::{PartWidth, Usefulness};
 pub(crate) use usefulness::{Vacuity, VacuousSet};
-pub use warning::{Remark, Warning, WarningKind};
 pub(crate) use warnings::{friction_warning, warnings};

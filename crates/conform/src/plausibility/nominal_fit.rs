@@ -15,7 +15,7 @@ pub(crate) struct NominalFit {
     pub recorded: Vec<[f64; 2]>,
     /// How far the first states lie from their nominal start at most, 2n, rad and rad/s.
     pub farthest_starts: Vec<f64>,
-    /// The largest |u| of each joint, n, N m.
+    /// The largest |u| of each part, n, N m.
     pub largest_input: Vec<f64>,
 }
 
@@ -32,12 +32,8 @@ struct Sums {
 impl NominalFit {
     /// Compares the nominal motion of each case with the middle between its highest and its
     /// lowest recording.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`]; a nominal motion that diverges.
     pub(crate) fn new(problem: &Problem) -> Result<Self> {
-        let n = problem.joints();
+        let n = problem.inputs();
         let mut all = Sums::zero(n);
         for suite in 0..problem.recordings().suites.len() {
             let parts = problem.cases_of(suite, |case| Sums::new(problem, &case))?;
@@ -56,16 +52,16 @@ impl NominalFit {
 }
 
 impl Sums {
-    fn zero(joints: usize) -> Self {
+    fn zero(parts: usize) -> Self {
         Self {
-            motion: vec![0.0; 2 * joints],
-            missed: vec![0.0; 2 * joints],
-            largest_input: vec![0.0; joints],
+            motion: vec![0.0; 2 * parts],
+            missed: vec![0.0; 2 * parts],
+            largest_input: vec![0.0; parts],
         }
     }
 
     fn new(problem: &Problem, case: &Case) -> Result<Self> {
-        let (n, measured) = (case.joints(), &case.measured);
+        let (n, measured) = (case.parts(), &case.measured);
         let solution = nominal_states(problem, case)?;
         let middle = |k: usize, i: usize| 0.5 * (measured.upper(k, i) + measured.lower(k, i));
         let mut sums = Self::zero(n);

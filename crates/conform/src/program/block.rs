@@ -16,8 +16,6 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Makes one block for each grid, with the deviations on it merged.
-    #[must_use]
     pub(crate) fn of_grids(grids: &[Grid], deviations: &[Deviation]) -> Vec<Self> {
         let none = |grid: &Grid| Envelope::new(grid.propagation.system().states());
         let mut merged: Vec<Envelope> = grids.iter().map(none).collect();

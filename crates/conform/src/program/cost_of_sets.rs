@@ -5,13 +5,11 @@ use crate::sets::UncertaintySets;
 
 impl Program<'_> {
     /// Returns the cost of some sets, an integral over time.
-    #[must_use]
     pub(crate) fn cost(&self, sets: &UncertaintySets) -> f64 {
         self.step * self.cost_in_steps(sets)
     }
 
     /// Returns the cost of widths of 1e-9 rad or rad/s throughout, which are as good as none.
-    #[must_use]
     pub(crate) fn negligible_cost(&self) -> f64 {
         self.step * self.negligible_in_steps()
     }
@@ -23,7 +21,6 @@ impl Program<'_> {
         radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
     }
 
-    /// Returns the [negligible cost](Self::negligible_cost) in mean steps.
     pub(crate) fn negligible_in_steps(&self) -> f64 {
         1e-9 * 0.5 * self.noise_cost.iter().sum::<f64>()
     }

@@ -21,7 +21,6 @@ pub(crate) struct SampleTimes {
 }
 
 impl SampleTimes {
-    /// Computes the times for lists of sample times, s.
     pub(crate) fn new<'t>(lists: impl Iterator<Item = &'t [f64]>) -> Self {
         let picoseconds = |times: &[f64]| -> Vec<i128> {
             times.iter().map(|t| (t * 0.5 * UNITS).round() as i128).collect()

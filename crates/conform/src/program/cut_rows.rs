@@ -9,7 +9,6 @@ use crate::program::solver::Triplets;
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {
-    /// Adds the scaled rows of all cuts.
     pub(super) fn add_cuts(
         &self,
         layout: &Layout,
@@ -34,7 +33,6 @@ impl Program<'_> {
         (cut.bound - dot(&cut.centre, &unknowns.centre), reach)
     }
 
-    /// What known noise adds to the reach along a cut.
     fn known_noise(&self, cut: &Cut) -> f64 {
         match &self.settings.noise {
             Noise::Fixed(radii) => dot(radii, &cut.noise),

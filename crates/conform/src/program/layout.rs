@@ -66,7 +66,6 @@ impl Layout {
         if self.has_centres { self.shape.radii() } else { 0 }
     }
 
-    /// Returns the columns and entries of one side of a row of the program.
     pub(crate) fn entries(
         &self,
         centre: &[f64],
@@ -107,7 +106,6 @@ impl Layout {
         }
     }
 
-    /// Returns the values of the unknowns that describe some sets.
     pub(crate) fn unknowns(&self, sets: &UncertaintySets) -> Vec<f64> {
         let (start, input) = (&sets.initial_set, &sets.input_set);
         let centres = start.centre.iter().chain(&input.centre).take(self.centres());
@@ -174,7 +172,6 @@ impl Layout {
         }
     }
 
-    /// Returns the sets that values of the unknowns describe.
     pub(crate) fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
         let (Shape { states, .. }, centres) = (self.shape, self.centres());
         let width = self.shape.radii();

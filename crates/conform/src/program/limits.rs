@@ -21,8 +21,8 @@ impl Problem {
         let settings = self.settings();
         let limited = match settings.initial_limit {
             InitialLimit::None => 0,
-            InitialLimit::Positions => self.joints(),
-            InitialLimit::States => 2 * self.joints(),
+            InitialLimit::Positions => self.inputs(),
+            InitialLimit::States => self.states(),
         };
         let starts = self.farthest_starts();
         let of_starts = |i: usize| match i < limited {
@@ -43,7 +43,7 @@ impl Problem {
 
     /// Returns how far the first states of the recordings lie from their nominal start at most, 2n.
     pub(crate) fn farthest_starts(&self) -> Vec<f64> {
-        let mut farthest = vec![0.0_f64; 2 * self.joints()];
+        let mut farthest = vec![0.0_f64; self.states()];
         for suite in &self.read.recordings.suites {
             let bounds = suite.totals.start_bounds.iter().zip(&suite.nominal_start);
             for (far, (bounds, nominal)) in farthest.iter_mut().zip(bounds) {

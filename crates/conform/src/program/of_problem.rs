@@ -7,10 +7,6 @@ use crate::program::program::Program;
 
 impl<'a> Program<'a> {
     /// Returns the program of a linear model and its recordings.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::deviations`].
     pub(crate) fn of_problem(problem: &'a Problem) -> Result<Self> {
         let (settings, shape) = (problem.settings(), problem.shape());
         let (grids, deviations) = (problem.grids()?, problem.deviations()?);

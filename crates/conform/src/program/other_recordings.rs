@@ -18,7 +18,6 @@ const SAME_STATE: f64 = 1e-9;
 
 impl Program<'_> {
     /// Returns the program with other deviations on each of its blocks: the cost is the same.
-    #[must_use]
     pub(crate) fn with_deviations<'d>(
         &self,
         deviations: impl IntoIterator<Item = &'d Deviation>,
@@ -34,7 +33,6 @@ impl Program<'_> {
     /// Returns what [`with_deviations`](Self::with_deviations) does for the deviations of some
     /// suites; this program has the deviations of all. Few bounds differ, and only they are
     /// computed.
-    #[must_use]
     pub(crate) fn with_suites(
         &self,
         deviations: &[Deviation],
@@ -56,10 +54,6 @@ impl Program<'_> {
     /// Solves the program as [`solve`](Self::solve) does, and begins with the rows `near`, which
     /// nearly decide the sets of other deviations, and with the last samples. That is faster where
     /// the answer is near those sets.
-    ///
-    /// # Errors
-    ///
-    /// As [`solve`](Self::solve).
     pub(crate) fn solve_near(&self, near: &[RowIndex]) -> Result<Solution> {
         let samples = |block: usize| self.blocks[block].envelope.len();
         let is_own = |(block, k, ..): &&RowIndex| *k < samples(*block);
@@ -71,7 +65,6 @@ impl Program<'_> {
     }
 
     /// Returns the program with the rows of some of its blocks alone: the cost is the same.
-    #[must_use]
     pub(crate) fn with_blocks(&self, keep: impl Fn(usize) -> bool) -> Self {
         let mut program = self.clone();
         let states = self.shape.states;
@@ -83,7 +76,6 @@ impl Program<'_> {
 
     /// Returns the rows that touch the reach of the sets if they have one. At a first sample that
     /// no recording leaves, all rows touch a set without width, and none decides anything.
-    #[must_use]
     pub(crate) fn deciding(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
         let radius = self.unknowns(sets).radius;
         let has_width =
@@ -92,7 +84,6 @@ impl Program<'_> {
     }
 
     /// Returns the number of rows, both sides together, that do not hold, up to rounding.
-    #[must_use]
     pub(crate) fn outside(&self, sets: &UncertaintySets) -> usize {
         let unknowns = self.unknowns(sets);
         let missed = self.all_reached(&unknowns).filter(|row| self.is_missed(row));
@@ -104,7 +95,6 @@ impl Program<'_> {
 
     /// Returns the factors of the radii of X0 alone, of U alone, and of both, with which every row
     /// holds up to rounding; `None` if no factor suffices.
-    #[must_use]
     pub(crate) fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
         let (states, all) = (sets.initial_set.dimension(), self.shape.radii());
         [0..states, states..all, 0..all].map(|part| self.factor(sets, part, |_| true))
@@ -114,7 +104,6 @@ impl Program<'_> {
     /// rounding: the factor of the radii of X0 for the rows of first samples, where U has no effect
     /// yet, and then the factor of the radii of U for all other rows; `None` if no factor suffices.
     /// X0 keeps its radii where the noise of the sensors limits it (`input_only`).
-    #[must_use]
     pub(crate) fn growth_in_turn(
         programs: &[Self],
         sets: &UncertaintySets,

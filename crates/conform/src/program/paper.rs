@@ -16,8 +16,6 @@ pub(crate) struct PaperSums {
 }
 
 impl Program<'_> {
-    /// Returns the paper's sums of some sets.
-    #[must_use]
     pub(crate) fn paper_sums(&self, sets: &UncertaintySets) -> PaperSums {
         let unknowns = self.unknowns(sets);
         let shares = distinct_shares(self.blocks.iter().map(|block| block.times.as_slice()));

@@ -91,8 +91,6 @@ pub(crate) struct Solution {
 pub(crate) type RowIndex = (usize, usize, usize, Side);
 
 impl<'a> Program<'a> {
-    /// Makes the program of some blocks for the weight of each state, s.
-    #[must_use]
     pub(crate) fn new(
         (settings, shape): (&'a Settings, Shape),
         weights: &[f64],
@@ -119,20 +117,15 @@ impl<'a> Program<'a> {
         program
     }
 
-    /// Keeps each centre (c_x, c_u) between two numbers.
-    #[must_use]
     pub(crate) fn with_centre_bounds(self, centre_bounds: Vec<[f64; 2]>) -> Self {
         Self { centre_bounds, ..self }
     }
 
-    /// Keeps V and X0 within `limits`.
-    #[must_use]
     pub(crate) fn with_limits(self, limits: Limits) -> Self {
         Self { limits, ..self }
     }
 
     /// Returns the number of rows of the whole program, each side counted.
-    #[must_use]
     pub(crate) fn rows(&self) -> usize {
         let states = self.settings.states.rows(self.shape.states);
         self.blocks.iter().map(|block| 2 * states * block.envelope.len()).sum()
@@ -150,10 +143,6 @@ impl<'a> Program<'a> {
 
     /// Solves the program as [`solve`](Self::solve) does, with the rows `indices` first; takes the
     /// rows that were added.
-    ///
-    /// # Errors
-    ///
-    /// As [`solve`](Self::solve).
     pub(crate) fn solve_from(&self, indices: &mut Vec<RowIndex>) -> Result<Solution> {
         let mut best: Option<(f64, Solution)> = None;
         let mut scalings = 0;
@@ -205,7 +194,6 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// Returns the rows of a few samples.
     pub(crate) fn first_rows(&self) -> Vec<RowIndex> {
         let longest = self.blocks.iter().map(|block| block.envelope.len()).max().unwrap_or(0);
         self.indices((longest / 8).max(1)).collect()
@@ -218,7 +206,6 @@ impl<'a> Program<'a> {
         self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
     }
 
-    /// Returns the recording that a row is about.
     pub(crate) fn run(&self, (b, k, i, side): RowIndex) -> u32 {
         let envelope = &self.blocks[b].envelope;
         match side {
@@ -307,7 +294,6 @@ impl<'a> Program<'a> {
     }
 
     /// Returns the largest |d| among the rows.
-    #[must_use]
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }

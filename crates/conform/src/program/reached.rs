@@ -38,7 +38,6 @@ impl Program<'_> {
         }
     }
 
-    /// Compares a row with the reach of sets.
     pub(crate) fn reached(&self, index: RowIndex, unknowns: &Unknowns) -> Reached {
         let (b, k, i, _) = index;
         let (centre, radius) = self.row(b, k, i);
@@ -99,14 +98,12 @@ impl Program<'_> {
     }
 
     /// Returns the rows that touch the hull of the sets' reach, within 1e-6 of its radius.
-    #[must_use]
     pub(crate) fn tight(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
         let unknowns = self.unknowns(sets);
         let rows = self.all_reached(&unknowns).filter(|row| touches(row, &unknowns));
         rows.map(|row| row.index).collect()
     }
 
-    /// Returns the rows among some that are [tight](Self::tight).
     pub(crate) fn tight_among(
         &self,
         rows: impl Iterator<Item = RowIndex>,

@@ -15,7 +15,6 @@ impl Program<'_> {
     /// the worst ratio, or each that has no limit by a term of the same cost, whichever costs less.
     /// The solver meets a row to a part of the largest row, so a small one may miss most of its
     /// reach.
-    #[must_use]
     pub(crate) fn repaired(&self, sets: &UncertaintySets) -> UncertaintySets {
         let scaled = sets.inflated(self.worst_ratio(sets), 0.0);
         let widened = self.widened(sets);

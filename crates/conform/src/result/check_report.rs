@@ -20,7 +20,7 @@ impl Check {
         let verdict = [Code::Conformant, Code::NotConformant, Code::Vacuous, Code::Points];
         let mut first = Section { findings: of(&verdict), ..Section::default() };
         let furthest = self.findings.iter().filter(|finding| {
-            finding.code == Code::FurthestOutside && !finding.numbers.contains_key("joint")
+            finding.code == Code::FurthestOutside && !finding.numbers.contains_key("part")
         });
         // The table has the furthest values, but not the furthest points.
         first.findings.extend(furthest.cloned());

@@ -11,11 +11,11 @@ use crate::result::code::Code;
 use crate::result::findings;
 use crate::result::model_summary::{AtHorizon, brief, share, table_of_sets, widest_first};
 use crate::tube::tube::Tube;
-use reachtube_finding::{Finding, FrontEnd, Remedy, Severity, Summary, Table};
+use reachtube_finding::{FrontEnd, Remedy, Severity, Summary, Table};
 
 impl Check {
     /// Returns the answer on a few lines, for users of a front end: the verdict, the suites that
-    /// leave the sets or else the sets of each joint at the horizon, and what follows. `tube` has
+    /// leave the sets or else the sets of each part at the horizon, and what follows. `tube` has
     /// the reachable sets that were compared.
     #[must_use]
     pub fn summary(&self, model: &Model, tube: &Tube, front_end: FrontEnd) -> Summary {
@@ -23,9 +23,8 @@ impl Check {
         let sets = AtHorizon::new(tube);
         let failing = failing(&self.verdict);
         // The cause and its remedy are part of the model's own answer.
-        let warnings = model.warnings.iter().map(Finding::from);
-        let warnings = warnings.filter(|warning| warning.code != Code::Cause);
-        let warnings = warnings.map(|warning| format!("of the model itself: {}", brief(&warning)));
+        let warnings = model.warnings.iter().filter(|warning| warning.code != Code::Cause);
+        let warnings = warnings.map(|warning| format!("of the model itself: {}", brief(warning)));
         let other = self.findings.iter().filter(|finding| {
             finding.code == Code::OtherRecordings && finding.severity == Severity::Warning
         });
@@ -141,10 +140,10 @@ fn table_of_suites(failing: &[&SuiteVerdict], signals: &Signals) -> Table {
 /// Returns the widest sets at the horizon: of the position that is widest beside its motion, and of
 /// the velocities.
 fn widest(model: &Model, sets: &AtHorizon, signals: &Signals) -> (String, String) {
-    let n = model.joints();
-    let name = |joint: usize| &model.signals.parts[joint].name;
+    let n = model.inputs();
+    let name = |part: usize| &model.signals.parts[part].name;
     let q = widest_first(model, sets).first().copied().unwrap_or_default();
-    let speed = |joint: &usize| sets.radii[n + joint];
+    let speed = |part: &usize| sets.radii[n + part];
     let qd = (0..n).max_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap_or_default();
     let value = format!(
         "± {} {} ({}, {} of its motion), ± {} {} ({})",

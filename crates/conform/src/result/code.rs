@@ -5,7 +5,7 @@ reachtube_finding::codes! {
         Conformant = "conformant",
         /// Some recordings were not proved to be enclosed.
         NotConformant = "not-conformant",
-        /// The sets were proved to enclose every recording but do not limit some joint.
+        /// The sets were proved to enclose every recording but do not limit every state.
         Vacuous = "vacuous",
         /// How many recorded points were proved to lie in the reachable set.
         Points = "points",
@@ -39,7 +39,7 @@ reachtube_finding::codes! {
         InputSetSize = "input-set-size",
         /// U does not contain 0.
         InputSetOffset = "input-set-offset",
-        /// U is 0 in a joint whose input has an error, and many times the error in another one.
+        /// U is 0 although the input has an error, and many times the error elsewhere.
         InputSetZero = "input-set-zero",
         /// V is nearly as wide as the recorded motion.
         NoiseSetSize = "noise-set-size",
@@ -61,7 +61,7 @@ reachtube_finding::codes! {
         ParametersMoved = "parameters-moved",
         /// The sets that hold for every run.
         AnyRun = "any-run",
-        /// Whether U covers joints that stick or slip at other times than the recorded ones.
+        /// Whether U covers motions that stick or slip at other times than the recorded ones.
         Stiction = "stiction",
         /// How many recorded values touch the reachable set.
         Touching = "touching",
@@ -73,7 +73,7 @@ reachtube_finding::codes! {
         NoGuarantee = "no-guarantee",
         /// The sets without each motion.
         LeftOut = "left-out",
-        /// Joints follow the order of the runs.
+        /// The motion follows the order of the runs.
         RobotChanged = "robot-changed",
         /// What would have to grow to enclose the recordings.
         GrowthNeeded = "growth-needed",

@@ -17,7 +17,7 @@ pub(super) fn dependence(model: &Model) -> [Section; 2] {
     left_out.findings.extend(findings::left_out(model));
     left_out.tables.extend((!model.left_out.is_empty()).then(|| table_of_left_out(model)));
     let mut changed = Section::default();
-    changed.findings.extend(findings::robot_changed(&model.trends));
+    changed.findings.extend(findings::robot_changed(&model.trends, &model.signals.noun));
     for of_suite in model.trends.chunk_by(|a, b| a.suite == b.suite) {
         let (name, value) = trend(model, of_suite);
         changed.fact(name, value);
@@ -66,19 +66,19 @@ fn table_of_left_out(model: &Model) -> Table {
     Table::new(header, all.iter().map(row).collect()).cut_to(MOST_MOTIONS)
 }
 
-/// Returns the joints of one suite that follow the order of the runs.
+/// Returns the parts of one suite that follow the order of the runs.
 fn trend(model: &Model, of_suite: &[Trend]) -> (String, String) {
     let signals = &model.signals;
-    let joint = |trend: &Trend| {
+    let part = |trend: &Trend| {
         format!(
             "{} {:+.2} ({} {})",
-            model.signals.parts[trend.joint - 1].name,
+            model.signals.parts[trend.part - 1].name,
             trend.correlation,
             significant(trend.range, 2),
-            signals.states[trend.joint - 1].unit
+            signals.states[trend.part - 1].unit
         )
     };
-    let list: Vec<String> = of_suite.iter().map(joint).collect();
+    let list: Vec<String> = of_suite.iter().map(part).collect();
     let Trend { suite, runs, .. } = &of_suite[0];
     let name = format!(
         "suite {suite}, rank correlation of the last position with the order of {runs} runs \

@@ -10,7 +10,6 @@ use reachtube_finding::{Section, Table};
 /// The column of standard errors in the table of parameters.
 const STANDARD_ERROR: usize = 3;
 
-/// Returns how the nominal model was fitted, if it was.
 pub(super) fn fit(model: &Model) -> Section {
     let Some(record) = &model.fit else { return Section::default() };
     let mut section = Section::default();
@@ -53,21 +52,21 @@ pub(super) fn fit(model: &Model) -> Section {
     if let Some(before) = record.identified_calibrated_cost {
         section.fact("cost of calibrated sets with the identified model", four_decimals(before));
     }
-    section.fact("RMS torque error before, joint by joint", torque(record, |t| t.identified));
-    section.fact("RMS torque error after, joint by joint", torque(record, |t| t.fitted));
+    let noun = &model.signals.noun;
+    let name = |when: &str| format!("RMS torque error {when}, {noun} by {noun}");
+    section.fact(name("before"), torque(record, |t| t.identified));
+    section.fact(name("after"), torque(record, |t| t.fitted));
     section
 }
 
-/// Returns a cost in words.
 fn cost(cost: Option<f64>) -> String {
     cost.map_or_else(|| "none (a nominal motion runs away)".into(), four_decimals)
 }
 
-/// Returns the parameters that changed.
 fn parameters(model: &Model, record: &FitRecord, changed: &[&FittedParameter]) -> Table {
     let row = |p: &&FittedParameter| {
         vec![
-            model.signals.parts[p.joint - 1].name.clone(),
+            model.signals.parts[p.part - 1].name.clone(),
             p.name.clone(),
             format!("{} {}", four_decimals(p.identified), p.unit),
             p.standard_error.map_or_else(|| "-".into(), four_decimals),
@@ -76,7 +75,7 @@ fn parameters(model: &Model, record: &FitRecord, changed: &[&FittedParameter]) -
             if p.is_beyond_error() { "beyond error".into() } else { String::new() },
         ]
     };
-    let header = ["joint", "parameter", "identified", "±", "fitted", "factor", ""];
+    let header = [&model.signals.noun, "parameter", "identified", "±", "fitted", "factor", ""];
     let mut table = Table::new(header, changed.iter().map(row).collect());
     if record.parameters.iter().all(|p| p.standard_error.is_none()) {
         table.rows.iter_mut().for_each(|row| drop(row.remove(STANDARD_ERROR)));

@@ -33,7 +33,11 @@ impl Model {
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
         let mut findings = self.report().findings();
-        findings.extend(findings::reach_of_proof(&self.proof, self.settings.states));
+        findings.extend(findings::reach_of_proof(
+            &self.proof,
+            self.settings.states,
+            &self.signals.noun,
+        ));
         findings.extend(findings::beyond_recordings(&self.trust));
         findings
     }
@@ -89,12 +93,12 @@ fn verdict(model: &Model) -> Section {
 fn sets(model: &Model) -> Section {
     let mut section = Section {
         tables: vec![table_of_sets(model)],
-        findings: model.warnings.iter().map(Finding::from).collect(),
+        findings: model.warnings.clone(),
         ..Section::default()
     };
     section.findings.extend(model.finding_of_stiction(&model.stiction));
     if let Some(noise) = &model.sensor_noise {
-        let (q, qd) = noise.radius.split_at(model.joints());
+        let (q, qd) = noise.radius.split_at(model.inputs());
         let [position, velocity] = [0, 1].map(|at| model.signals.units_of_state(at).list());
         let list = |radii: &[f64]| spaced(radii.iter().map(|radius| format!("{radius:.1e}")));
         let source = match noise.estimated {
@@ -104,7 +108,7 @@ fn sets(model: &Model) -> Section {
         let radii = format!("q {} {position}; qd {} {velocity}", list(q), list(qd));
         section.fact(format!("sensor noise ({source})"), radii);
     }
-    let (q, qd) = model.nominal_explains.split_at(model.joints());
+    let (q, qd) = model.nominal_explains.split_at(model.inputs());
     let percent = |part: &Option<f64>| match part {
         Some(part) if *part > 0.0 => format!("{:.1}", 100.0 * part),
         Some(_) => "0".into(),
@@ -124,25 +128,25 @@ fn sets(model: &Model) -> Section {
     section
 }
 
-/// Returns the sets joint by joint.
 fn table_of_sets(model: &Model) -> Table {
-    let n = model.joints();
+    let n = model.inputs();
     let [q, qd] = [0, 1].map(|at| model.signals.units_of_state(at));
     let u = model.signals.units_of_inputs();
-    let mut header = vec!["joint".into(), q.head("X0 q"), qd.head("X0 qd"), u.head("U")];
+    let mut header =
+        vec![model.signals.noun.clone(), q.head("X0 q"), qd.head("X0 qd"), u.head("U")];
     if model.noise_set.is_some() {
         header.extend([q.head("V q"), qd.head("V qd")]);
     }
-    let row = |joint: usize| {
+    let row = |part: usize| {
         let mut row = vec![
-            model.signals.parts[joint].name.clone(),
-            q.cell(joint, interval(model.initial_set.bounds(joint))),
-            qd.cell(joint, interval(model.initial_set.bounds(n + joint))),
-            u.cell(joint, interval(model.input_set.bounds(joint))),
+            model.signals.parts[part].name.clone(),
+            q.cell(part, interval(model.initial_set.bounds(part))),
+            qd.cell(part, interval(model.initial_set.bounds(n + part))),
+            u.cell(part, interval(model.input_set.bounds(part))),
         ];
         if let Some(noise) = &model.noise_set {
-            row.push(q.cell(joint, interval(noise.bounds(joint))));
-            row.push(qd.cell(joint, interval(noise.bounds(n + joint))));
+            row.push(q.cell(part, interval(noise.bounds(part))));
+            row.push(qd.cell(part, interval(noise.bounds(n + part))));
         }
         row
     };

@@ -29,7 +29,7 @@ impl AtHorizon {
 
 impl Answer {
     /// Returns the answer on a few lines, for users of a front end: the verdict, the sets of each
-    /// joint at the horizon, what follows for new motions, and what helps most.
+    /// part at the horizon, what follows for new motions, and what helps most.
     #[must_use]
     pub fn summary(&self, front_end: FrontEnd) -> Summary {
         let Self { model, found, .. } = self;
@@ -38,7 +38,7 @@ impl Answer {
             verdict: vec![verdict(model, &sets)],
             table: table_of_sets(model, &sets, None),
             importance: widest_first(model, &sets),
-            warnings: model.warnings.iter().map(|warning| brief(&warning.into())).collect(),
+            warnings: model.warnings.iter().map(brief).collect(),
             ..Summary::default()
         };
         summary.verdict.extend(against(model));
@@ -48,7 +48,7 @@ impl Answer {
         summary
     }
 
-    /// Returns the sets of each joint at the horizon, with the factors by which they would have to
+    /// Returns the sets of each part at the horizon, with the factors by which they would have to
     /// grow for other motions, n.
     #[must_use]
     pub fn table_at_horizon(&self, factors: &[f64]) -> Table {
@@ -75,20 +75,17 @@ impl Model {
     /// warnings, another warning, or the way to a guarantee.
     fn most_helpful(&self) -> Option<Finding> {
         let lost = self.proof.lost.iter().map(Finding::from);
-        let warnings: Vec<Finding> = self.warnings.iter().map(Finding::from).collect();
-        let causes = warnings.iter().filter(|finding| finding.code == Code::Cause).cloned();
-        let new_motions = [findings::next_motion_of_fit(self)];
-        let all = lost.chain(causes).chain(warnings.iter().cloned()).chain(new_motions);
+        let causes = self.warnings.iter().filter(|finding| finding.code == Code::Cause);
+        let warnings = causes.chain(&self.warnings).cloned();
+        let all = lost.chain(warnings).chain([findings::next_motion_of_fit(self)]);
         all.into_iter().find(|finding| finding.remedy.is_some())
     }
 }
 
-/// Returns the remedy of a finding as a sentence.
 fn remedy(finding: &Finding, front_end: FrontEnd) -> String {
     finding.remedy.as_ref().map(|remedy| remedy.written_for(front_end)).unwrap_or_default()
 }
 
-/// Returns the verdict on the recordings that a model was made from.
 fn verdict(model: &Model, sets: &AtHorizon) -> String {
     let words = findings::outcome_of_fit(model);
     let proof = &model.proof;
@@ -115,7 +112,6 @@ pub(super) fn against(model: &Model) -> Vec<String> {
     lines
 }
 
-/// Returns a finding in a few words.
 pub(super) fn brief(finding: &Finding) -> String {
     let meaning = Code::of(&finding.code).map_or("", Code::meaning).trim_end_matches('.');
     match &finding.place {
@@ -127,33 +123,32 @@ pub(super) fn brief(finding: &Finding) -> String {
     }
 }
 
-/// Returns the sets at the horizon joint by joint.
 pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f64]>) -> Table {
-    let n = model.joints();
+    let n = model.inputs();
     let [q, qd] = [0, 1].map(|at| model.signals.units_of_state(at));
     let u = model.signals.units_of_inputs();
     let mut header = vec![
-        "joint".into(),
+        model.signals.noun.clone(),
         q.head(&format!("q at {:.3} s", sets.horizon)),
         "of motion".into(),
         qd.head("qd"),
         u.head("U"),
     ];
     header.extend(factors.map(|_| "held out".into()));
-    let half = |unit: &reachtube_finding::Units, joint: usize, radius: f64| match radius.is_finite()
+    let half = |unit: &reachtube_finding::Units, part: usize, radius: f64| match radius.is_finite()
     {
-        true => unit.cell(joint, format!("± {}", two_digits_up(radius))),
+        true => unit.cell(part, format!("± {}", two_digits_up(radius))),
         false => "lost".into(),
     };
-    let row = |joint: usize| {
+    let row = |part: usize| {
         let mut row = vec![
-            model.signals.parts[joint].name.clone(),
-            half(&q, joint, sets.radii[joint]),
-            share(model, joint, sets.radii[joint]),
-            half(&qd, joint, sets.radii[n + joint]),
-            u.cell(joint, two_digits_outward(model.input_set.bounds(joint))),
+            model.signals.parts[part].name.clone(),
+            half(&q, part, sets.radii[part]),
+            share(model, part, sets.radii[part]),
+            half(&qd, part, sets.radii[n + part]),
+            u.cell(part, two_digits_outward(model.input_set.bounds(part))),
         ];
-        row.extend(factors.map(|factors| match factors[joint] {
+        row.extend(factors.map(|factors| match factors[part] {
             factor if factor.is_finite() => two_digits_up(factor),
             _ => "-".into(),
         }));
@@ -162,21 +157,20 @@ pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f
     Table::new(header, (0..n).map(row).collect())
 }
 
-/// Returns the joints, the one whose set is widest beside its motion first.
+/// Returns the parts, the one whose set is widest beside its motion first.
 pub(super) fn widest_first(model: &Model, sets: &AtHorizon) -> Vec<usize> {
-    let displacement = |joint: usize| {
-        model.usefulness.as_ref().map_or(1.0, |said| said.joints[joint].displacement)
-    };
-    let ratio = |joint: &usize| sets.radii[*joint] / displacement(*joint);
-    let mut joints: Vec<usize> = (0..model.joints()).collect();
-    joints.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
-    joints
+    let displacement =
+        |part: usize| model.usefulness.as_ref().map_or(1.0, |said| said.parts[part].displacement);
+    let ratio = |part: &usize| sets.radii[*part] / displacement(*part);
+    let mut parts: Vec<usize> = (0..model.inputs()).collect();
+    parts.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
+    parts
 }
 
-/// Returns half a set's width as a share of the joint's motion.
-pub(super) fn share(model: &Model, joint: usize, radius: f64) -> String {
-    let joints = model.usefulness.as_ref().map(|said| &said.joints);
-    match joints.map(|joints| radius / joints[joint].displacement) {
+/// Returns half a set's width as a share of the part's motion.
+pub(super) fn share(model: &Model, part: usize, radius: f64) -> String {
+    let parts = model.usefulness.as_ref().map(|said| &said.parts);
+    match parts.map(|parts| radius / parts[part].displacement) {
         Some(ratio) if ratio < LARGE => format!("{:.0} %", 100.0 * ratio),
         Some(ratio) if ratio.is_finite() => format!("x {ratio:.0e}"),
         _ => "-".into(),

@@ -52,10 +52,6 @@ struct Trial<'a> {
 
 /// Enlarges the sets of the first linearisation until they hold every recording, then makes one
 /// radius after the other as small as it can be while the others stay.
-///
-/// # Errors
-///
-/// As [`search`](crate::search::search::search).
 pub(super) fn bisect(
     problem: &Problem,
     claim: &dyn Claim,
@@ -161,7 +157,6 @@ impl BisectionState {
         self.radius_now() - self.low <= TOLERANCE * self.first
     }
 
-    /// Bisects once.
     fn halve(&mut self, trial: &Trial) -> Result<()> {
         // The first guess is no uncertainty at all.
         let guess = if self.low == 0.0 && self.radius_now() == self.first {

@@ -47,7 +47,6 @@ pub(crate) enum Deciding {
 }
 
 impl Deciding {
-    /// Returns whether one side of a row decides the sets.
     pub(crate) fn contains(&self, row: &Row, edge: &Edge) -> bool {
         let named = (row.strand, row.sample, row.state, edge.side);
         edge.excess.is_finite()

@@ -11,7 +11,6 @@ pub(crate) const LARGEST_GAP_OF_POINTS: f64 = 1e-4;
 /// program. Costs that differ by less than `negligible` are equal: sets of rounding only have no
 /// meaningful bound. A cost below the bound is no better than one above it: either the bound is
 /// wrong by as much, or the sets break a limit of the program.
-#[must_use]
 pub(crate) fn optimality_gap(cost: f64, lower_bound: f64, negligible: f64) -> f64 {
     let apart = (cost - lower_bound).abs();
     if apart <= negligible { 0.0 } else { apart / lower_bound.max(negligible) }

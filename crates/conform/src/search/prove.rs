@@ -15,10 +15,6 @@ const ATTEMPTS: [i32; 2] = [61, 24];
 /// Checks sets of an exact plant with directed rounding, and inflates their radii more and more
 /// until every row and what is claimed are proved, or for a number of times. `scale` is the largest
 /// deviation.
-///
-/// # Errors
-///
-/// As [`Claim::judge`].
 pub(crate) fn prove(
     (problem, plant): (&Problem, &dyn Plant),
     claim: &dyn Claim,

@@ -23,10 +23,6 @@ use crate::tube::plant::{Costs, Plant};
 /// Finds the smallest sets for all recordings of a problem, and those without each motion, unless
 /// the motions were left out before (`left_out`). What a search for the sets of a model that is not
 /// linear has finished is kept in the file `resume` and removed at the end.
-///
-/// # Errors
-///
-/// As [`conform`](crate::conform).
 pub(crate) fn smallest_sets(
     problem: &Problem,
     claim: &dyn Claim,
@@ -65,10 +61,6 @@ fn digest(problem: &Problem) -> String {
 }
 
 /// Finds the smallest sets of a linear model alone.
-///
-/// # Errors
-///
-/// As [`smallest_sets`].
 pub(crate) fn smallest_sets_alone(problem: &Problem, claim: &dyn Claim) -> Result<Found> {
     let plant = &*plant(problem)?;
     let ended = search((problem, plant), claim, &Journal::new(None, String::new()), &Silent)?;

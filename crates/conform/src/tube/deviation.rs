@@ -34,7 +34,6 @@ impl Nominal {
     /// # Guarantee
     ///
     /// Outer: the exact solution lies in the trajectory.
-    #[must_use]
     pub(crate) fn new(grids: &Grids, case: &Case) -> Self {
         let grid = grids.find(&case.grid);
         let trajectory =
@@ -50,7 +49,6 @@ impl Deviation {
     ///
     /// Outer: the exact deviation of every run from the exact solution of the model lies in the
     /// envelope.
-    #[must_use]
     pub(crate) fn new(grids: &Grids, case: &Case) -> Self {
         let Nominal { grid, trajectory } = Nominal::new(grids, case);
         let envelope = case.measured.map(
@@ -60,7 +58,6 @@ impl Deviation {
         Self { suite: case.suite, grid, envelope }
     }
 
-    /// Returns the deviation without any bound after sample `last`.
     pub(crate) fn lost_after(self, last: usize) -> Self {
         let (infinity, known) = (f64::INFINITY, |k: usize| k <= last);
         let envelope = self.envelope.map(

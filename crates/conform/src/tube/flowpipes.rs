@@ -42,11 +42,6 @@ pub(crate) fn furthest<T>(
     Ok(furthest)
 }
 
-/// Attempts the flowpipe of a case under `sets`, and shows the set at each sample to `visit`.
-///
-/// # Errors
-///
-/// When sizes do not fit.
 pub(crate) fn attempt(
     system: &PolynomialSystem,
     case: &Case,
@@ -74,10 +69,6 @@ pub(crate) enum Enclosed {
 
 /// Returns how many rows of a case, both sides together, the flowpipe under `sets` does not
 /// enclose; `None` if it is lost.
-///
-/// # Errors
-///
-/// When sizes do not fit.
 pub(crate) fn rows_outside(
     problem: &Problem,
     case: &Case,
@@ -92,11 +83,6 @@ pub(crate) fn rows_outside(
     Ok(is_reached.then_some(outside))
 }
 
-/// Returns whether the flowpipe of a case under `sets` encloses its recordings.
-///
-/// # Errors
-///
-/// When sizes do not fit.
 pub(crate) fn enclosed(
     problem: &Problem,
     case: &Case,

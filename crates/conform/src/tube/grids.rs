@@ -25,7 +25,6 @@ impl Grid {
     /// # Guarantee
     ///
     /// As [`ReachSets::new`].
-    #[must_use]
     pub(crate) fn reach(&self, sets: &UncertaintySets) -> ReachSets {
         let UncertaintySets { initial_set, input_set, .. } = sets;
         ReachSets::new(&self.propagation, &self.input_gains, initial_set, input_set)
@@ -59,7 +58,6 @@ impl Grids {
         Ok(Self { grids })
     }
 
-    #[must_use]
     pub(crate) fn as_slice(&self) -> &[Grid] {
         &self.grids
     }
@@ -69,7 +67,6 @@ impl Grids {
     /// # Panics
     ///
     /// When `grid` was not given to [`new`](Self::new).
-    #[must_use]
     pub(crate) fn find(&self, grid: &TimeGrid) -> usize {
         let fits = |candidate: &Grid| grid.is_prefix_of(&candidate.times);
         self.grids.iter().position(fits).expect("every grid of the recordings is in the list")

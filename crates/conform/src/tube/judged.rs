@@ -70,7 +70,6 @@ pub(crate) struct Along {
 
 impl Judged {
     /// Merges what was found of other points, or at other samples.
-    #[must_use]
     pub(crate) fn merge(mut self, other: Self) -> Self {
         self.points += other.points;
         self.outside += other.outside;

@@ -39,19 +39,11 @@ pub(crate) struct Linear<'a> {
 
 impl<'a> Linear<'a> {
     /// Takes the model of a problem, with slices where its notion asks points.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::grids`].
     pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
         Self::with(problem, problem.settings().notion.asks_points())
     }
 
     /// Takes the model of a problem, with slices whatever its notion is.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::grids`].
     pub(crate) fn with_slices(problem: &'a Problem) -> Result<Self> {
         Self::with(problem, true)
     }
@@ -64,11 +56,6 @@ impl<'a> Linear<'a> {
         Ok(Self { problem, grids, generators, program: OnceLock::new() })
     }
 
-    /// Returns the program of the rows.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::deviations`].
     pub(crate) fn program(&self) -> Result<&Program<'a>> {
         if let Some(program) = self.program.get() {
             return Ok(program);
@@ -77,13 +64,11 @@ impl<'a> Linear<'a> {
         Ok(self.program.get_or_init(|| program))
     }
 
-    /// Computes the reachable sets on some grids, without judging points.
     pub(crate) fn tube_without_points(grids: &[Grid], sets: UncertaintySets) -> Tube {
         let strands = grids.iter().map(|grid| Strand::on_grid(grid, &sets)).collect();
         Tube::of(sets, Enclosure::Inner, strands)
     }
 
-    /// Returns the reachable set at a sample.
     pub(crate) fn slice<'b>(&'b self, sets: &'b UncertaintySets, at: At) -> LinearSlice<'b> {
         let strand = at.0 as usize;
         LinearSlice { grid: &self.grids[strand], generators: &self.generators[strand], sets, at }

@@ -22,10 +22,6 @@ use crate::tube::state::SearchState;
 use crate::tube::worst_case::Correction;
 
 /// Linearises the model along every case, and poses the program, with one block per case.
-///
-/// # Errors
-///
-/// As [`Plant::round`](crate::tube::plant::Plant::round).
 pub(super) fn round<'a>(problem: &'a Problem, state: &mut SearchState) -> Result<Round<'a>> {
     let (cases, sets) = (problem.cases()?, &state.sets);
     let sensitivities = sensitivities(problem, sets, &state.directions)?;
@@ -82,7 +78,7 @@ fn corrections(
 ) -> Result<Vec<Correction>> {
     let model = problem.nonlinear();
     let of = |(case, sensitivity): (&Case, &Sensitivity)| match state.rounds {
-        0 => Correction::none(case.grid.len(), 2 * case.joints()),
+        0 => Correction::none(case.grid.len(), case.states()),
         _ => Correction::new(model, case, &state.sets, sensitivity),
     };
     Ok(problem.cases()?.par_iter().zip(sensitivities).map(of).collect())
@@ -97,7 +93,7 @@ fn block(
     correction: &Correction,
     sets: &UncertaintySets,
 ) -> Block {
-    let states = 2 * case.joints();
+    let states = case.states();
     let centre: Vec<f64> =
         sets.initial_set.centre.iter().chain(&sets.input_set.centre).copied().collect();
     let from_nominal = |k: usize, i: usize, x: f64| {

@@ -51,7 +51,6 @@ pub(crate) struct Edge {
 impl Row {
     /// Returns whether both sides are proved to be enclosed. An excess that is not a number proves
     /// nothing.
-    #[must_use]
     pub(crate) fn holds(&self) -> bool {
         self.edges.iter().all(|edge| edge.excess <= 0.0)
     }
@@ -69,10 +68,6 @@ pub(crate) struct RecordedBounds<'a> {
 
 impl<'a> RecordedBounds<'a> {
     /// Returns the recorded values of a problem, beside the strands of its tubes.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
     pub(crate) fn all(problem: &'a Problem) -> Result<Vec<Self>> {
         let of_grid = |deviation: &'a Deviation| Self {
             suite: deviation.suite,
@@ -85,7 +80,6 @@ impl<'a> RecordedBounds<'a> {
         })
     }
 
-    /// Returns the recorded states of a case with its index.
     pub(crate) fn of_case((strand, case): (usize, &'a Case)) -> Self {
         Self { suite: case.suite, strand, envelope: &case.measured }
     }

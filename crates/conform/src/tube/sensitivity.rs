@@ -45,7 +45,7 @@ impl Sensitivity {
         disturbance: Disturbance,
         asked: &[&Direction],
     ) -> Result<Self, f64> {
-        let n = case.joints();
+        let n = case.parts();
         let times = case.grid.times();
         let shifted = |values: &[f64], centre: &[f64]| -> Vec<f64> {
             values.iter().zip(centre.iter().cycle()).map(|(x, c)| x + c).collect()

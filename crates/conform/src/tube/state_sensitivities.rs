@@ -49,7 +49,6 @@ pub(super) struct StateSensitivities {
 }
 
 impl StateSensitivities {
-    /// Begins at the first of `samples` samples.
     pub(super) fn new(shape: Shape, samples: usize, disturbance: Disturbance) -> Self {
         let Shape { states, inputs } = shape;
         let blocks = samples.div_ceil(SIDE_BY_SIDE);
@@ -120,7 +119,6 @@ impl StateSensitivities {
         }
     }
 
-    /// Returns the row in direction l.
     pub(super) fn along(&self, l: &[f64]) -> DirectionRow {
         let Shape { states, inputs } = self.shape;
         let weighted = |column: &mut dyn Iterator<Item = f64>| -> f64 {
@@ -143,7 +141,6 @@ impl StateSensitivities {
         DirectionRow { centre: start.into_iter().chain(sum).collect(), radius }
     }
 
-    /// Returns the signs of the sensitivities at the present sample.
     pub(super) fn node(&self, sample: usize) -> Node {
         let Shape { states, inputs } = self.shape;
         let places = (0..self.samples)
@@ -159,7 +156,6 @@ impl StateSensitivities {
         }
     }
 
-    /// Returns the sensitivity of state i to input j over a sample.
     fn input(&self, j: usize, sample: usize, i: usize) -> f64 {
         let block = j * self.blocks + sample / SIDE_BY_SIDE;
         self.inputs[block * self.shape.states + i][sample % SIDE_BY_SIDE]

@@ -66,19 +66,17 @@ impl Strand {
         Self { times, hull, lost: None }
     }
 
-    /// Takes the sets along a case.
     pub(crate) fn along(case: &Case, flowpipe: Flowpipe) -> Self {
         let lost = match flowpipe.outcome() {
             FlowpipeOutcome::Reached => None,
             FlowpipeOutcome::Failed { time, state, .. } => {
-                let state = State::from_index(*state, case.joints());
+                let state = State::from_index(*state, case.parts());
                 Some(Lost { case: case.name.clone(), time: *time, state, nominal: false })
             }
         };
         Self { times: Arc::clone(&case.grid), hull: Hull::State(flowpipe), lost }
     }
 
-    /// Returns the sets of the deviation of a linear model.
     pub(crate) fn deviation(&self) -> Option<&ReachSets> {
         match &self.hull {
             Hull::Deviation(reach) => Some(reach),
@@ -86,7 +84,6 @@ impl Strand {
         }
     }
 
-    /// Returns the flowpipe of a model that is not linear.
     pub(crate) fn flowpipe(&self) -> Option<&Flowpipe> {
         match &self.hull {
             Hull::Deviation(_) => None,

@@ -52,7 +52,6 @@ impl Tube {
         Self { sets, enclosure, strands, judged: None }
     }
 
-    /// Returns whether the set at a sample was computed.
     pub(crate) fn reaches(&self, (strand, sample): At) -> bool {
         (sample as usize) < self.strands[strand as usize].hull.len()
     }
@@ -87,10 +86,6 @@ impl Tube {
     }
 
     /// Returns where reachable sets, or nominal motions, could not be followed to the end.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
     pub(crate) fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
         let of_sets = self.strands.iter().filter_map(|strand| strand.lost.clone());
         let runaways = match problem.dynamics().linear_system() {
@@ -106,10 +101,6 @@ impl Tube {
     ///
     /// As [`rows`]: deviations of a linear model are outer and its hulls inner; for any other model
     /// measured states are compared with the outer enclosure.
-    ///
-    /// # Errors
-    ///
-    /// As [`Problem::run`].
     pub(crate) fn for_each_row(
         &self,
         problem: &Problem,

@@ -18,8 +18,8 @@ pub struct Witness {
     pub sample: usize,
     /// Time since the first sample, s.
     pub time: f64,
-    /// Joint, from 1.
-    pub joint: usize,
+    /// Part, from 1.
+    pub part: usize,
     /// The state.
     pub state: State,
     /// The side of the set.
@@ -31,15 +31,14 @@ pub struct Witness {
 }
 
 impl Witness {
-    /// Names one side of a row.
     pub(crate) fn new(problem: &Problem, row: &Row, edge: &Edge) -> Self {
-        let state = State::from_index(row.state, problem.joints());
+        let state = State::from_index(row.state, problem.inputs());
         Self {
             suite: problem.recordings().suites[row.suite].entry.name.clone(),
             run: problem.entry(edge.run as usize).file.clone(),
             sample: row.sample,
             time: row.time,
-            joint: state.joint + 1,
+            part: state.part + 1,
             state,
             side: edge.side,
             excess: edge.excess,

@@ -29,7 +29,6 @@ pub(super) struct Correction {
 }
 
 impl Correction {
-    /// Returns no correction, as a linear model has.
     pub(super) fn none(samples: usize, states: usize) -> Self {
         Self { further: vec![0.0; samples * states * 2], states, runs_away: None }
     }
@@ -50,7 +49,7 @@ impl Correction {
         sets: &UncertaintySets,
         sensitivity: &Sensitivity,
     ) -> Self {
-        let states = 2 * case.joints();
+        let states = case.states();
         let found =
             sensitivity.nodes.par_iter().map(|node| at_node(system, case, sets, sensitivity, node));
         let found: Vec<(Vec<f64>, bool)> = found.collect();
@@ -82,7 +81,7 @@ fn at_node(
     sensitivity: &Sensitivity,
     node: &Node,
 ) -> (Vec<f64>, bool) {
-    let (k, states) = (node.sample, 2 * case.joints());
+    let (k, states) = (node.sample, case.states());
     let radii = reach(case, sets, sensitivity, k);
     let nominal = &sensitivity.nominal[k * states..(k + 1) * states];
     let is_near = |&(i, side): &(usize, Side)| {
@@ -125,7 +124,7 @@ fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usiz
         let (_, gains) = sensitivity.row(k, i);
         gains.iter().zip(radii()).map(|(gain, r)| gain * r).sum()
     };
-    (0..2 * case.joints()).map(of_state).collect()
+    (0..case.states()).map(of_state).collect()
 }
 
 /// Returns the start and inputs that take the linearisation furthest.
@@ -137,7 +136,7 @@ fn worst_case(
     i: usize,
     side: Side,
 ) -> (Vec<f64>, Vec<f64>) {
-    let (n, states) = (case.joints(), 2 * case.joints());
+    let (n, states) = (case.parts(), case.states());
     let base = case.start.clone();
     let vertex = |centre: f64, radius: f64, sign: f64| centre + side.sign() * sign * radius;
     let (x0, u) = (&sets.initial_set, &sets.input_set);
@@ -145,8 +144,8 @@ fn worst_case(
         .map(|j| base[j] + vertex(x0.centre[j], x0.radius[j], node.start[i * states + j]))
         .collect();
     let input = |at: usize| {
-        let joint = at % n;
-        case.inputs[at] + vertex(u.centre[joint], u.radius[joint], node.input[at * states + i])
+        let part = at % n;
+        case.inputs[at] + vertex(u.centre[part], u.radius[part], node.input[at * states + i])
     };
     (system.lift(&start), (0..node.sample * n).map(input).collect())
 }

@@ -101,7 +101,7 @@ fn furthest_apart(problem: &Problem) -> Option<String> {
     let spread = |suite: &reachtube_conform::data::Suite| {
         let last = suite.envelope.len() - 1;
         let width = |i: usize| suite.envelope.upper(last, i) - suite.envelope.lower(last, i);
-        (0..problem.joints()).map(|i| (width(i) + LEAST_SPREAD).ln()).sum::<f64>()
+        (0..problem.inputs()).map(|i| (width(i) + LEAST_SPREAD).ln()).sum::<f64>()
     };
     let widest = suites.max_by(|a, b| spread(a).total_cmp(&spread(b)))?;
     Some(widest.entry.name.clone())

@@ -58,7 +58,7 @@ pub(crate) fn stops_along(
     every: usize,
 ) -> Result<Vec<WorstStop>> {
     let of_suite = |suite: &Suite| {
-        let motion = Motion::of(suite, 2 * problem.joints())?;
+        let motion = Motion::of(suite, problem.states())?;
         let from_sample = |k: usize, stop: Option<Stop>| (motion.times[k], stop);
         let question = (brakes, category, every.max(1));
         let stops = motion.stops(problem.robot(), question, from_sample);

@@ -24,7 +24,7 @@ impl Motion {
     /// Simulates a model along the samples of a case from `start` (2n) under `inputs` (samples x
     /// n); ends early if the motion diverges.
     pub(super) fn new(dynamics: &System, case: &Case, start: &[f64], inputs: &[f64]) -> Self {
-        let (n, times) = (case.joints(), case.grid.times());
+        let (n, times) = (case.parts(), case.grid.times());
         let inputs = &inputs[..n * times.len().saturating_sub(1)];
         let mut states: Vec<f64> = Vec::with_capacity(times.len() * 2 * n);
         let mut observe = |_: usize, _: usize, x: &[f64]| states.extend(&x[..2 * n]);
@@ -73,7 +73,7 @@ impl Motion {
         sample: usize,
         functional: &[f64],
     ) -> (Vec<f64>, Vec<f64>) {
-        let (n, times) = (case.joints(), case.grid.times());
+        let (n, times) = (case.parts(), case.grid.times());
         let mut adjoint = DVector::from_column_slice(functional);
         let mut by_input = vec![0.0; sample * n];
         for k in (0..sample.min(self.slopes.len())).rev() {

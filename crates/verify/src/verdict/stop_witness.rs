@@ -87,7 +87,7 @@ impl StopSearch<'_> {
 
     fn begins(&self, motion: &Motion, sample: usize) -> Option<usize> {
         let Approach { case, body, scene, .. } = self.approach;
-        let (n, times) = (case.joints(), case.grid.times());
+        let (n, times) = (case.parts(), case.grid.times());
         let Some(distance) = self.rule.distance else {
             return (motion.states.len() > sample * 2 * n).then_some(sample);
         };
@@ -107,7 +107,7 @@ impl StopSearch<'_> {
     /// with the slope of its distance by the state at which the stop begins.
     fn stopped(&self, pair: &Clearance, before: &Before) -> Option<(Witness, Vec<f64>)> {
         let Approach { problem, case, .. } = self.approach;
-        let (n, k) = (case.joints(), before.sample);
+        let (n, k) = (case.parts(), before.sample);
         let from = case.grid.times()[k];
         let state = &before.motion.states[k * 2 * n..(k + 1) * 2 * n];
         let towards = self.approach.slope(pair, &state[..n], from);
@@ -187,7 +187,7 @@ impl StopSearch<'_> {
         (case, stop): (&StopCase, &SimulatedStop),
         (distance, time): (f64, f64),
     ) -> Witness {
-        let (n, k) = (self.approach.case.joints(), before.sample);
+        let (n, k) = (self.approach.case.parts(), before.sample);
         let times = &self.approach.case.grid.times()[..=k];
         let from = times[k];
         let mut drive = case.drive.clone();

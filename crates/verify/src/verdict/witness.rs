@@ -87,7 +87,7 @@ impl Approach<'_> {
     /// nominal one, each round takes the vertices of X0 and U towards the obstacle.
     pub(crate) fn closest(&self, pair: &Clearance) -> Option<Witness> {
         let Self { case, problem, .. } = self;
-        let (n, samples) = (case.joints(), case.grid.len());
+        let (n, samples) = (case.parts(), case.grid.len());
         let (start, inputs) = self.nominal();
         let mut motion = Motion::new(problem.dynamics(), case, &start, &inputs);
         let mut best = self.nearest(pair, &motion, &start, &inputs);
@@ -132,7 +132,7 @@ impl Approach<'_> {
         functional: &[f64],
     ) -> (Vec<f64>, Vec<f64>) {
         let Self { case, sets, problem, .. } = self;
-        let n = case.joints();
+        let n = case.parts();
         let (start, inputs) = self.nominal();
         let (by_start, by_input) = motion.adjoint(case, sample, functional);
         let by_input = held(by_input, n, case.grid.len(), problem.settings().disturbance);
@@ -151,7 +151,7 @@ impl Approach<'_> {
         start: &[f64],
         inputs: &[f64],
     ) -> Option<Witness> {
-        let (n, times) = (self.case.joints(), self.case.grid.times());
+        let (n, times) = (self.case.parts(), self.case.grid.times());
         let distances = motion.states.chunks_exact(2 * n).zip(times);
         let at = (pair.joint, pair.index);
         let distances = distances.map(|(x, t)| (self.distance(at, &x[..n], *t), *t));

@@ -92,7 +92,7 @@ impl Events {
     }
 
     fn print(&mut self, leave: &Leave) -> Result<()> {
-        let name = &self.signals.parts[leave.joint - 1].name;
+        let name = &self.signals.parts[leave.part - 1].name;
         let finding = leave.finding(&self.signals);
         let text = format!("{}\n", finding.text);
         let code = finding.code.clone();
@@ -127,7 +127,7 @@ impl Events {
         for alarm in alarms {
             let finding = alarm.finding(&self.signals);
             if self.json {
-                let name = alarm.joint.map(|joint| &*self.signals.parts[joint - 1].name);
+                let name = alarm.part.map(|part| &*self.signals.parts[part - 1].name);
                 line(&Event::Alarm { alarm, name, code: finding.code.clone() })?;
             } else {
                 output::print(&format!("{}\n", finding.text))?;

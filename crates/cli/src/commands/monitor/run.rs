@@ -128,7 +128,7 @@ impl Watch<'_> {
         let form = match &self.form {
             Some(form) => form,
             None => {
-                let form = Form::of(line, self.model.joints());
+                let form = Form::of(line, self.model.inputs());
                 let form = self.form.insert(form.map_err(|problem| wrong(number, &problem))?);
                 if matches!(form, Form::Csv(_)) {
                     return Ok(());

@@ -1,7 +1,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use reachtube_recordings::{Defect, DefectKind, ReadOptions, Run};
+use reachtube_recordings::{Defect, ReadOptions, Run};
 use sha2::{Digest, Sha256};
 
 use crate::data::input::RunInput;
@@ -48,24 +48,9 @@ impl Context {
         Ok(Self { drive: Arc::clone(drive), shape, options, is_own, digest })
     }
 
-    /// Returns the input along a run.
-    ///
-    /// # Errors
-    ///
-    /// The defects of the run.
     pub(crate) fn input(&self, file: &str, run: &Run) -> Result<RunInput, Vec<Defect>> {
-        let (path, n) = (Path::new(file), self.shape.inputs);
-        let lengths = [run.states.len(), 2 * run.torques.len()];
-        if run.joints != n || run.is_empty() || lengths != [2 * n * run.len(); 2] {
-            let problem = format!(
-                "the run has {} samples of {} joints, but the robot has {n}",
-                run.len(),
-                run.joints
-            );
-            let remedy = "give the robot of the recordings, and one sample at least";
-            let defect = Defect::new(path, None, problem, remedy).of_kind(DefectKind::Joints);
-            return Err(vec![defect]);
-        }
+        let path = Path::new(file);
+        run.check_size(path, self.shape.inputs).map_err(|defect| vec![defect])?;
         self.drive.input(path, run, None)
     }
 }

@@ -18,7 +18,6 @@ pub(super) struct Defects {
 }
 
 impl Defects {
-    /// Takes the defects of the recording at `place`.
     pub(super) fn take(&mut self, place: u32, mut defects: Vec<Defect>) {
         defects.truncate(MOST_OF_ONE);
         for defect in &mut defects {

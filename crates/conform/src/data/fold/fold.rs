@@ -78,10 +78,6 @@ impl Fold {
 
     /// Returns the fold of no recording, to compare recordings with a model's: `digest` is the
     /// model's digest of them, and `fitted` has the SHA-256 of each that is listed.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new), but the setup may request explanations.
     pub(crate) fn comparing(
         setup: &Setup,
         digest: String,
@@ -93,7 +89,6 @@ impl Fold {
         Ok(fold)
     }
 
-    /// Returns the fold of no recording that merges with this one.
     fn empty(&self) -> Self {
         let (tree, suites, defects) = Default::default();
         let compared = self.state.compared.as_ref().map(|(digest, _)| (digest.clone(), 0));
@@ -182,7 +177,7 @@ impl Fold {
                 if let Some((_, count)) = &mut self.state.compared {
                     *count += u64::from(is_fitted);
                 }
-                let mut own = Envelope::new(2 * run.joints);
+                let mut own = Envelope::new(run.dimension());
                 let known = self.state.suites.get_mut(suite).map(|known| &mut known.envelope);
                 known.unwrap_or(&mut own).include(place, &run.states);
                 let one = SuiteFold::of(place, entry, run, input, own);

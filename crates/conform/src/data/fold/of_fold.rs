@@ -90,7 +90,6 @@ fn entries_of(name: &str, fold: &SuiteFold) -> impl Iterator<Item = (usize, RunE
     })
 }
 
-/// Makes the suite of a fold and keeps its whole runs.
 fn suite(name: String, fold: SuiteFold, setup: &Setup, kept: &mut HashMap<usize, Run>) -> Suite {
     let whole = fold.whole.iter().map(|(place, whole)| (place as usize, whole.run.clone()));
     kept.extend(whole);

@@ -66,7 +66,6 @@ impl SuiteFold {
         }
     }
 
-    /// Merges the fold of other runs.
     pub(super) fn merge(&mut self, other: Self, context: &Context, most_bytes: usize) {
         let inputs = context.shape.inputs;
         let motions = self.motion.take().into_iter().chain(other.motion);

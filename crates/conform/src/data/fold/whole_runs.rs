@@ -19,25 +19,30 @@ pub(super) enum WholeRuns {
 /// A run with its input, which follows from the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct WholeRun {
-    #[serde(with = "RunForm")]
+    #[serde(with = "stored_run")]
     pub run: Run,
     #[serde(skip, default = "RunInput::none")]
     pub input: RunInput,
 }
 
-/// A run without the number of joints, which all runs share.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Run")]
-struct RunForm {
-    #[serde(skip)]
-    joints: usize,
-    start: f64,
-    times: Vec<f64>,
-    states: Vec<f64>,
-    torques: Vec<f64>,
-    temperatures: Vec<f64>,
-    before: Vec<f64>,
-    sha256: String,
+/// A run by its numbers.
+mod stored_run {
+    use super::*;
+
+    type Numbers = (f64, [Vec<f64>; 3], [Vec<f64>; 2], String);
+
+    pub(super) fn serialize<S: Serializer>(run: &Run, out: S) -> Result<S::Ok, S::Error> {
+        let Run { start, times, states, torques, temperatures, before, sha256, .. } = run;
+        (start, [times, states, torques], [temperatures, before], sha256).serialize(out)
+    }
+
+    pub(super) fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Run, D::Error> {
+        let (start, [times, states, torques], [temperatures, before], sha256) =
+            Numbers::deserialize(from)?;
+        let inputs = torques.len() / times.len().max(1);
+        let run = Run::new(inputs, times, states, torques).map_err(D::Error::custom)?;
+        Ok(Run { start, temperatures, before, sha256, ..run })
+    }
 }
 
 impl Serialize for WholeRuns {
@@ -95,7 +100,6 @@ impl WholeRuns {
         }
     }
 
-    /// Returns the runs that stay, by their places.
     pub(super) fn iter(&self) -> Box<dyn Iterator<Item = (u32, &WholeRun)> + '_> {
         match self {
             Self::All(runs) => Box::new(runs.iter().map(|(place, run)| (*place, run))),
@@ -106,7 +110,6 @@ impl WholeRuns {
     /// Computes the inputs of runs that were read from bytes; `None` if a run is none.
     pub(super) fn with_inputs(mut self, context: &Context) -> Option<Self> {
         let complete = |WholeRun { run, input }: &mut WholeRun| {
-            run.joints = context.shape.inputs;
             *input = context.input("", run).ok()?;
             Some(())
         };
@@ -117,7 +120,6 @@ impl WholeRuns {
         Some(self)
     }
 
-    /// Returns whether all runs stay.
     pub(super) fn are_all(&self) -> bool {
         matches!(self, Self::All(_))
     }

@@ -8,7 +8,6 @@ use crate::data::suite::Suite;
 use crate::model::other_data::{OtherData, Replaced};
 use crate::next_motion::growth::Growth;
 use crate::result::code::Code;
-use crate::result::findings::words::listed;
 use reachtube_finding::{Finding, Severity};
 
 /// Factor beyond which widening a set is no remedy.
@@ -105,12 +104,10 @@ pub(crate) fn other_recordings(other: &OtherData) -> Finding {
         .with("added", *added as f64)
 }
 
-/// A note on the recordings.
 pub(crate) fn note(text: &str) -> Finding {
     Finding::new(Severity::Info, Code::Recordings, text)
 }
 
-/// Counts the recordings at rest, if there are some.
 pub(crate) fn at_rest(recordings: &Recordings) -> Option<Finding> {
     let suites = recordings.suites.iter().filter(|suite| suite.is_at_rest());
     let count: usize = suites.map(Suite::run_count).sum();
@@ -131,7 +128,7 @@ fn changed(run: &Replaced) -> String {
 
 /// Lists the first recordings and counts the others.
 fn few(files: &[String]) -> String {
-    let named = listed(&files[..files.len().min(MOST_FILES)]);
+    let named = files[..files.len().min(MOST_FILES)].join(", ");
     match files.len().saturating_sub(MOST_FILES) {
         0 => named,
         others => format!("{named} and {others} more"),

@@ -6,7 +6,6 @@ use crate::model::file::Model;
 use crate::next_motion::trends::Trend;
 use crate::next_motion::without_motion::LeftOut;
 use crate::result::code::Code;
-use crate::result::findings::words::listed;
 use reachtube_finding::{Finding, Severity};
 
 /// The meaning of the table of the sets without each motion, and the motion that the others
@@ -64,16 +63,16 @@ pub(crate) fn left_out(model: &Model) -> Option<Finding> {
 }
 
 /// Finding that the robot changed while it was recorded; `None` if it did not.
-pub(crate) fn robot_changed(trends: &[Trend]) -> Option<Finding> {
+pub(crate) fn robot_changed(trends: &[Trend], noun: &str) -> Option<Finding> {
     let mut suites: Vec<String> = trends.iter().map(|trend| trend.suite.clone()).collect();
     suites.dedup();
-    let place = format!("{} {}", plural(suites.len(), "suite"), listed(&suites));
+    let place = format!("{} {}", plural(suites.len(), "suite"), suites.join(", "));
     let text = format!(
-        "The robot changed while it was recorded: in {place}, joints follow the order of the \
+        "The robot changed while it was recorded: in {place}, {noun}s follow the order of the \
          runs, as a robot that warms up does. A later motion may lie further out."
     );
     let finding = Finding::new(Severity::Warning, Code::RobotChanged, text).at(place);
-    (!suites.is_empty()).then(|| finding.with("joints", trends.len() as f64))
+    (!suites.is_empty()).then(|| finding.with("parts", trends.len() as f64))
 }
 
 /// Returns which of X0 and U has to grow for a motion, in words; no words if it is not known.

@@ -12,7 +12,7 @@ use reachtube_finding::{Finding, Severity};
 const USELESS: f64 = 0.5;
 
 /// The rows that were compared, and how far their comparison reaches.
-pub(crate) fn reach_of_proof(verdict: &Verdict, states: States) -> Vec<Finding> {
+pub(crate) fn reach_of_proof(verdict: &Verdict, states: States, noun: &str) -> Vec<Finding> {
     let info = |code, text: String| Finding::new(Severity::Info, code, text);
     let Verdict { rows, violations, enclosure, .. } = verdict;
     let compared = match states {
@@ -37,7 +37,7 @@ pub(crate) fn reach_of_proof(verdict: &Verdict, states: States) -> Vec<Finding> 
                  be a behaviour of the model itself. The recordings that decide the sets touch \
                  the linearised set, not the wider outer set.";
     let mut all = vec![rows, info(Code::AtSamples, samples.into())];
-    all.push(info(Code::Notion, notion.limit_words().into()));
+    all.push(info(Code::Notion, notion.limit_words(noun)));
     if *enclosure == Enclosure::Outer {
         all.push(info(Code::OuterSet, outer.into()));
     }

@@ -7,12 +7,11 @@ mod fit;
 mod held_out;
 mod limits;
 mod new_motions;
-mod plausibility;
+pub(crate) mod plausibility;
 mod sets;
 mod stiction;
 mod vacuous;
 mod verdict;
-pub(super) mod words;
 
 pub(crate) use check::{
     at_rest, growth_needed, least_growth, note, other_recordings, other_start, use_unknown,

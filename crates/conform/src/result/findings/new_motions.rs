@@ -6,7 +6,6 @@ use crate::model::file::Model;
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::trust::{Trust, TrustKind};
 use crate::result::code::Code;
-use crate::result::findings::words::listed;
 use reachtube_finding::{Finding, Remedy, Severity};
 
 /// Largest number of gauges that are listed.
@@ -18,7 +17,6 @@ const LITTLE: f64 = 0.5;
 /// A bound above this probability is none.
 const LARGEST_BOUND: f64 = 0.999;
 
-/// Which motions calibrated the sets, and by what factor.
 pub(crate) fn calibrated(calibration: &Calibration) -> Finding {
     let Calibration { fitted, gauges, factor, input_only, .. } = calibration;
     let gauge = |gauge: &Gauge| format!("{} {}", gauge.motion, at_least(gauge.gauge));
@@ -32,21 +30,18 @@ pub(crate) fn calibrated(calibration: &Calibration) -> Finding {
         if *input_only { "U" } else { "Each of X0 and U" },
         counted(fitted.len(), "motion"),
         at_least(*factor),
-        listed(&list)
+        list.join(", ")
     );
     Finding::new(Severity::Info, Code::Calibrated, text).with("factor", *factor)
 }
 
-/// The bound for the next motion of a model that was fitted.
 pub(crate) fn next_motion_of_fit(model: &Model) -> Finding {
     let Model { trust, proof, calibration, settings, data, .. } = model;
     let can_calibrate = calibration.is_none() && !settings.notion.asks_points();
     let could_say_more = can_calibrate && trust.violation_probability > LITTLE;
     let remedy =
         (could_say_more && data.motions() > 1).then(|| Remedy::new("calibrate", "MOTION,.."));
-    let finding = next_motion(trust, proof.enclosure.set_name(), "touched the set");
-    let text = finding.text.replace(HOW_TO_CALIBRATE, "");
-    Finding { text, ..finding }.remedied_by(remedy)
+    next_motion(trust, proof.enclosure.set_name(), "touched the set").remedied_by(remedy)
 }
 
 /// The bound for the next motion; `set` names the set, and `role` says what the deciding
@@ -121,9 +116,7 @@ pub(crate) fn next_motion_in_brief(trust: &Trust, role: &str) -> String {
         );
     }
     match *bound > LARGEST_BOUND {
-        true if *deciding == 0 => {
-            format!("no guarantee: {}", trust.basis.replace(HOW_TO_CALIBRATE, ""))
-        }
+        true if *deciding == 0 => format!("no guarantee: {}", trust.basis),
         true if *motions == 1 => "no guarantee: 1 motion is too few".into(),
         true => format!("no guarantee: {of_motions} are too few"),
         false => format!(
@@ -143,6 +136,3 @@ pub(crate) fn fitted_to_these() -> Finding {
     let text = "No guarantee for new motions: the model was fitted to some of these recordings.";
     Finding::new(Severity::Info, Code::NoGuarantee, text)
 }
-
-/// What the basis of a fitted nominal model says about settings in files of earlier versions.
-const HOW_TO_CALIBRATE: &str = "; --calibrate MOTION,.. keeps motions back from both fits";

@@ -1,12 +1,11 @@
 //! Which sets are vacuous, although they were proved to enclose every recording.
 
-use reachtube_scalar::number::{counted, plural};
+use reachtube_scalar::number::counted;
 
 use crate::data::signals::Signals;
 use crate::model::file::Model;
 use crate::plausibility::{Usefulness, Vacuity, VacuousSet};
 use crate::result::code::Code;
-use crate::result::findings::words::listed;
 use reachtube_finding::{Finding, Severity};
 
 /// Largest number of sets that the sentence describes.
@@ -16,7 +15,7 @@ const MOST_SETS: usize = 3;
 pub(crate) fn vacuous(model: &Model) -> Option<Finding> {
     let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
     let sets = worst_first(said);
-    let place = place(&sets);
+    let place = place(model, &sets);
     let first = sets.iter().take(MOST_SETS);
     let mut words: Vec<String> = first.map(|set| described(set, said, &model.signals)).collect();
     let more = sets.len().saturating_sub(MOST_SETS);
@@ -29,46 +28,38 @@ pub(crate) fn vacuous(model: &Model) -> Option<Finding> {
     Some(
         finding
             .with("horizon", said.horizon)
-            .with("joint", worst.joint as f64)
+            .with("part", worst.part as f64)
             .with("size", worst.size)
             .with("compared_with", worst.compared_with),
     )
 }
 
-/// Returns the worst vacuous set in a few words, with all joints that have one.
+/// Returns the worst vacuous set in a few words, with all parts that have one.
 pub(crate) fn vacuous_in_brief(model: &Model) -> Option<String> {
     let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
     let sets = worst_first(said);
     let worst = sets.first()?;
-    Some(format!("vacuous for {}: {}", place(&sets), described(worst, said, &model.signals)))
+    Some(format!("vacuous for {}: {}", place(model, &sets), described(worst, said, &model.signals)))
 }
 
-/// Returns the vacuous sets, the worst first.
 fn worst_first(said: &Usefulness) -> Vec<&Vacuity> {
     let mut sets: Vec<&Vacuity> = said.vacuous.iter().collect();
     sets.sort_by(|a, b| factor(b).total_cmp(&factor(a)));
     sets
 }
 
-/// Names the joints of some sets.
-fn place(sets: &[&Vacuity]) -> String {
-    let mut joints: Vec<usize> = sets.iter().map(|set| set.joint).collect();
-    joints.sort_unstable();
-    joints.dedup();
-    let names: Vec<String> = joints.iter().map(ToString::to_string).collect();
-    format!("{} {}", plural(names.len(), "joint"), listed(&names))
+fn place(model: &Model, sets: &[&Vacuity]) -> String {
+    model.signals.place(sets.iter().map(|set| set.part))
 }
 
-/// Returns by which factor a set exceeds what it is compared with.
 fn factor(set: &Vacuity) -> f64 {
     set.size / set.compared_with
 }
 
-/// Describes a vacuous set.
 fn described(set: &Vacuity, said: &Usefulness, signals: &Signals) -> String {
-    let Vacuity { joint, size, .. } = set;
+    let Vacuity { part, size, .. } = set;
     let n = signals.inputs.len();
-    let [position, velocity] = [joint - 1, n + joint - 1].map(|state| &signals.states[state].unit);
+    let [position, velocity] = [part - 1, n + part - 1].map(|state| &signals.states[state].unit);
     let times = match factor(set) {
         factor if factor < 100.0 => format!("{factor:.1} times"),
         factor => format!("{factor:.0e} times"),
@@ -80,9 +71,7 @@ fn described(set: &Vacuity, said: &Usefulness, signals: &Signals) -> String {
     match set.set {
         VacuousSet::Reachable => {
             let (unit, end) = (position, said.horizon);
-            format!(
-                "the set of q{joint} is {size} {unit} wide after {end:.3} s, {times} its motion"
-            )
+            format!("the set of q{part} is {size} {unit} wide after {end:.3} s, {times} its motion")
         }
         VacuousSet::InitialPosition | VacuousSet::InitialVelocity => {
             let (state, unit) = match set.set {
@@ -90,13 +79,13 @@ fn described(set: &Vacuity, said: &Usefulness, signals: &Signals) -> String {
                 _ => ("qd", velocity),
             };
             format!(
-                "X0 of {state}{joint} is {size} {unit} wide, {times} what the recorded starts and \
+                "X0 of {state}{part} is {size} {unit} wide, {times} what the recorded starts and \
                  the noise of the sensors explain"
             )
         }
         VacuousSet::Input => {
-            let unit = &signals.inputs[joint - 1].unit;
-            format!("U of joint {joint} reaches {size} {unit}, {times} the largest input")
+            let unit = &signals.inputs[part - 1].unit;
+            format!("U of {} {part} reaches {size} {unit}, {times} the largest input", signals.noun)
         }
     }
 }

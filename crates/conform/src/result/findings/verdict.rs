@@ -14,7 +14,6 @@ use crate::tube::tube::Enclosure;
 use crate::tube::witness::Witness;
 use reachtube_finding::{Finding, Remedy, Severity};
 
-/// Returns the code and the severity of a verdict.
 fn outcome(is_conformant: bool) -> (Severity, Code) {
     match is_conformant {
         true => (Severity::Info, Code::Conformant),
@@ -41,7 +40,6 @@ impl From<&Lost> for Finding {
     }
 }
 
-/// The verdict on the recordings that a model was made from.
 pub(crate) fn verdict_of_fit(model: &Model) -> Finding {
     let Verdict { enclosure, rows, violations, runs, .. } = &model.proof;
     let how = match enclosure {
@@ -64,7 +62,6 @@ pub(crate) fn verdict_of_fit(model: &Model) -> Finding {
         .with("rows_outside", violations.count as f64)
 }
 
-/// Returns the verdict in one or two words.
 pub(crate) fn outcome_of_fit(model: &Model) -> &'static str {
     match (model.verified, model.gap_of_not_minimal()) {
         _ if model.is_vacuous() => "conformant, but vacuous",
@@ -74,7 +71,6 @@ pub(crate) fn outcome_of_fit(model: &Model) -> &'static str {
     }
 }
 
-/// Counts the recordings and suites that a model was made from.
 pub(crate) fn recordings_of_fit(model: &Model) -> String {
     format!(
         "{} in {}",
@@ -142,7 +138,6 @@ pub(crate) fn points(verdict: &Verdict, states: States) -> Option<Finding> {
     Some(finding)
 }
 
-/// The point that lies furthest outside.
 pub(crate) fn furthest_point(worst: &PointWitness, signals: &Signals) -> Finding {
     let PointWitness { run, time, combination, value, reach, .. } = worst;
     let state = worst.leading_state();
@@ -160,13 +155,12 @@ pub(crate) fn furthest_point(worst: &PointWitness, signals: &Signals) -> Finding
         .with("reach", *reach)
 }
 
-/// The value that lies furthest outside.
 pub(crate) fn furthest_value(worst: &Witness, signals: &Signals) -> Finding {
     let text = format!("Furthest outside: {}.", place_outside(worst, signals));
     Finding::new(Severity::Failure, Code::FurthestOutside, text)
         .at(&worst.run)
         .with("time", worst.time)
-        .with("joint", worst.joint as f64)
+        .with("part", worst.part as f64)
         .with("excess", worst.excess)
 }
 
@@ -174,10 +168,11 @@ pub(crate) fn furthest_value(worst: &Witness, signals: &Signals) -> Finding {
 pub(crate) fn place_outside(place: &Witness, signals: &Signals) -> String {
     let unit = signals.unit(place.state);
     format!(
-        "{} at {:.3} s: joint {}, {} is {} {unit} beyond the {} bound",
+        "{} at {:.3} s: {} {}, {} is {} {unit} beyond the {} bound",
         place.run,
         place.time,
-        place.joint,
+        signals.noun,
+        place.part,
         place.state,
         four_decimals(place.excess),
         format!("{:?}", place.side).to_lowercase()
@@ -195,7 +190,7 @@ pub(crate) fn unstable(case: &str, time: f64) -> Finding {
 
 /// The cost of the sets, and its distance from the optimum if it is known.
 pub(crate) fn cost(model: &Model) -> Finding {
-    let Some(cost) = model.cost else {
+    let (Some(cost), Some(of_samples)) = (model.cost, model.cost_of_samples) else {
         let text = "no cost: a reachable set could not be computed to the end";
         return Finding::new(Severity::Info, Code::Cost, text);
     };
@@ -224,25 +219,18 @@ pub(crate) fn cost(model: &Model) -> Finding {
         }
         (None, None) => String::new(),
     };
-    // Files of versions before the cost by time have sums over samples alone.
-    let sum = match model.cost_of_samples {
-        Some(sum) => format!(
-            "integrated over time; summed over samples, as in the paper: {}",
-            four_decimals(sum)
-        ),
-        None => "summed over samples".into(),
-    };
     let text = format!(
-        "cost {}{quality}: weighted widths of the reachable sets, summed over states and {sum}",
-        four_decimals(cost)
+        "cost {}{quality}: weighted widths of the reachable sets, summed over states and \
+         integrated over time; summed over samples, as in the paper: {}",
+        four_decimals(cost),
+        four_decimals(of_samples)
     );
     Finding::new(Severity::Info, Code::Cost, text)
         .with("cost", cost)
-        .with("cost_of_samples", model.cost_of_samples.unwrap_or(f64::NAN))
+        .with("cost_of_samples", of_samples)
         .with("lower_bound", model.cost_lower_bound.unwrap_or(f64::NAN))
 }
 
-/// That the sets are not the smallest.
 pub(crate) fn not_smallest(gap: f64) -> Finding {
     let text = format!(
         "The sets enclose the recordings but are not the smallest: the solver stopped above \
