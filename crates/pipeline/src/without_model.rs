@@ -56,7 +56,7 @@ pub struct WithoutModel {
 impl Foretold {
     /// Takes the sets of an answer before they were widened, and motions that were left out.
     pub(crate) fn new(answer: &Answer, left_out: &[Unseen]) -> Self {
-        let joints = &answer.found.usefulness.joints;
+        let joints = &answer.found.usefulness.parts;
         let gauge = |unseen: &Unseen| unseen.left_out.gauge.unwrap_or(f64::INFINITY);
         Self {
             half_widths: joints.iter().map(|own| own.half_width.unwrap_or(f64::INFINITY)).collect(),
