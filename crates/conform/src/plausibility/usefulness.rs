@@ -54,10 +54,10 @@ pub(crate) struct Vacuity {
     pub part: usize,
     /// The set.
     pub set: VacuousSet,
-    /// Its size: the width of a set of states, the reach of U from 0.
+    /// Its width.
     pub size: f64,
-    /// What it is compared with: the motion of the part over all recordings, the width that starts
-    /// and noise explain, or the largest recorded input.
+    /// What it is compared with: the motion of the part over all recordings, or the width that
+    /// starts and noise explain.
     pub compared_with: f64,
 }
 
@@ -71,8 +71,6 @@ pub(crate) enum VacuousSet {
     InitialPosition,
     /// X0 of the velocity.
     InitialVelocity,
-    /// U.
-    Input,
 }
 
 impl PartWidth {
@@ -153,20 +151,6 @@ fn of_sets(
         let is_vacuous = size > limit.max(SMALLEST);
         is_vacuous.then_some(Vacuity { part, set, size, compared_with: explained })
     };
-    let (low, high) = sets.input_set.bounds(part);
-    let (size, compared_with) = (high.max(-low), fit.largest_input[part]);
-    let input = (size > compared_with && size > SMALLEST).then_some(Vacuity {
-        part: part + 1,
-        set: VacuousSet::Input,
-        size,
-        compared_with,
-    });
-    [
-        initial(VacuousSet::InitialPosition, part),
-        initial(VacuousSet::InitialVelocity, n + part),
-        input,
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    let sets = [(VacuousSet::InitialPosition, part), (VacuousSet::InitialVelocity, n + part)];
+    sets.into_iter().filter_map(|(set, i)| initial(set, i)).collect()
 }

@@ -149,7 +149,8 @@ fn of_input(
 ) -> Option<Remark> {
     let (low, high) = sets.input_set.bounds(part);
     let (reach, largest) = (high.max(-low), fit.largest_input[part]);
-    (reach > largest && reach > 1e-6).then(|| Remark {
+    // Where nothing is recorded, there is nothing to compare with.
+    (reach > largest && largest > 1e-6).then(|| Remark {
         code: Code::InputSetSize,
         part: part + 1,
         text: format!(

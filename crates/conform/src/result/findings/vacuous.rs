@@ -83,9 +83,5 @@ fn described(set: &Vacuity, said: &Usefulness, signals: &Signals) -> String {
                  the noise of the sensors explain"
             )
         }
-        VacuousSet::Input => {
-            let unit = &signals.inputs[part - 1].unit;
-            format!("U of {} {part} reaches {size} {unit}, {times} the largest input", signals.noun)
-        }
     }
 }
