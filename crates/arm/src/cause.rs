@@ -5,6 +5,9 @@ use reachtube_recordings::Torque;
 /// The horizon that is proposed for long recordings, s.
 const FIRST_HORIZON: f64 = 0.5;
 
+/// The part of the input beyond which nothing shows how it is to be read.
+const UNRELATED: f64 = 0.8;
+
 /// What most likely makes an answer implausible. Parts are of the recorded input.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Cause {
@@ -134,11 +137,24 @@ fn parameters_words(cause: &Cause) -> (String, &'static str, String) {
             String::new(),
         ),
     };
-    let words = format!(
-        "Units, signs, kind of torque, order of joints and lags fit, but {} of the recorded input \
-         does not follow from the recorded motion. {what_to_do}",
-        percent(*unexplained)
-    );
+    let left = percent(*unexplained);
+    let words = if *unexplained > UNRELATED {
+        format!(
+            "Of the recorded input, {left} does not follow from the recorded motion, however it is \
+             read. Check that the torques were measured, and with these motions. {what_to_do}"
+        )
+    } else {
+        // A robot that was identified has the unit, the sign and the kind of its torques.
+        let of_all = match is_identified {
+            true => "",
+            false => "N mm, kN m, the opposite sign or another kind of the torques, ",
+        };
+        format!(
+            "Of the recorded input, {left} does not follow from the recorded motion. Tried without \
+             gain: {of_all}degrees, a wrong sign or order of single torques, and torques up to \
+             0.2 s late. {what_to_do}"
+        )
+    };
     (words, setting, value)
 }
 

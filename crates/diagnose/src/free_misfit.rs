@@ -1,8 +1,10 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
-use reachtube_recordings::Torque;
 use reachtube_robot::{Parameter, Regressor, Robot};
 
 use crate::change::Change;
+use crate::hypothesis::Hypothesis;
+use crate::likeliest::{Misfit, likeliest_fault};
+use crate::signals::Signals;
 
 /// Number of samples that suffice to recognise a fault.
 const ENOUGH_SAMPLES: usize = 300;
@@ -11,29 +13,9 @@ const ENOUGH_SAMPLES: usize = 300;
 /// that the recordings do not distinguish are no error.
 const RIDGE: f64 = 1e-12;
 
-/// A recording of an arm, filtered, in rows of n values.
-#[derive(Debug, Clone)]
-pub struct Signals<'a> {
-    /// Time between samples, s.
-    pub step: f64,
-    /// Positions, velocities and accelerations, rad and s.
-    pub motion: [&'a [f64]; 3],
-    /// Torques, N m.
-    pub torques: &'a [f64],
-    /// Whether a joint moves; its torque is not used where it does not.
-    pub moves: Vec<bool>,
-}
-
-impl Signals<'_> {
-    /// Returns the samples at which at least one of n joints moves.
-    fn moving(&self, n: usize) -> impl Iterator<Item = usize> + '_ {
-        (0..self.moves.len() / n).filter(move |k| self.moves[k * n..(k + 1) * n].contains(&true))
-    }
-}
-
 /// The torque that no parameters of a robot explain in some recordings.
 pub struct FreeMisfit<'a> {
-    pub(crate) robot: &'a Robot,
+    robot: &'a Robot,
     columns: Vec<Parameter>,
     recordings: Vec<Signals<'a>>,
     stride: usize,
@@ -56,43 +38,27 @@ impl<'a> FreeMisfit<'a> {
         Self { robot, columns, recordings, stride }
     }
 
-    pub(crate) fn stated(&self) -> Change {
-        Change::none(Torque::Motor, self.robot.joint_count())
-    }
-
-    /// Returns the root mean square of the torque of each joint that no parameters explain, N m.
-    ///
-    /// The second of two fits weights each joint by its residuals. `None` for too few samples,
-    /// which any parameters would fit.
-    pub(crate) fn sizes(&self, change: &Change) -> Option<Vec<f64>> {
-        let rows = self.rows(change);
-        if rows.joints.len() < 2 * self.columns.len() {
-            return None;
-        }
-        let mut sizes = rows.sizes(&rows.torques, self.robot.joint_count());
-        for _ in 0..2 {
-            sizes = rows.sizes(&rows.residuals(&sizes)?, sizes.len());
-        }
-        Some(sizes)
+    /// Returns the one fault of the columns that explains the torque best, with the joint whose
+    /// squared residuals drop most, and the share that remains of them. `None` if no fault explains
+    /// enough. Only degrees are looked for if the recordings do not determine all combinations of
+    /// parameters.
+    #[must_use]
+    pub fn likeliest_fault(&self, is_determined: bool) -> Option<(Hypothesis, (usize, f64))> {
+        likeliest_fault(self, is_determined)
     }
 
     fn rows(&self, change: &Change) -> Rows {
         let n = self.robot.joint_count();
         let (mut joints, mut torques, mut kept, mut states) = (vec![], vec![], vec![], vec![]);
         for own in &self.recordings {
-            let samples = own.torques.len() / n;
-            let shift = |lag: &f64| (lag / own.step).round() as isize;
-            let shifts: Vec<isize> = change.lags.iter().map(shift).collect();
-            let late = |k: usize, joint: usize| k.checked_add_signed(shifts[joint]);
-            let has_torque =
-                |k: &usize| (0..n).all(|joint| late(*k, joint).is_some_and(|at| at < samples));
+            let late = own.read(change);
+            let has_torque = |k: &usize| (0..n).all(|joint| late(*k, joint).is_some());
             for k in own.moving(n).step_by(self.stride).filter(has_torque) {
                 let row = |values: &'a [f64]| &values[k * n..(k + 1) * n];
                 for joint in 0..n {
                     if own.moves[k * n + change.motion_columns[joint]] {
-                        let at = late(k, joint).unwrap_or(k) * n + change.torque_columns[joint];
                         joints.push(joint);
-                        torques.push(change.torque_factors[joint] * own.torques[at]);
+                        torques.extend(late(k, joint));
                         kept.push(states.len() * n + joint);
                     }
                 }
@@ -102,6 +68,31 @@ impl<'a> FreeMisfit<'a> {
         }
         let y = Regressor::new(self.robot, &self.columns).stacked(&states).select_rows(&kept);
         Rows { joints, y, torques: DVector::from_vec(torques) }
+    }
+}
+
+impl Misfit for FreeMisfit<'_> {
+    fn robot(&self) -> &Robot {
+        self.robot
+    }
+
+    fn recordings(&self) -> &[Signals<'_>] {
+        &self.recordings
+    }
+
+    /// Returns the root mean square of the torque of each joint that no parameters explain, N m.
+    ///
+    /// The second of two fits weights each joint by its residuals.
+    fn sizes(&self, change: &Change) -> Option<Vec<f64>> {
+        let rows = self.rows(change);
+        if rows.joints.len() < 2 * self.columns.len() {
+            return None;
+        }
+        let mut sizes = rows.sizes(&rows.torques, self.robot.joint_count());
+        for _ in 0..2 {
+            sizes = rows.sizes(&rows.residuals(&sizes)?, sizes.len());
+        }
+        Some(sizes)
     }
 }
 

@@ -107,6 +107,12 @@ impl Hypothesis {
         }
     }
 
+    /// Returns the size with its name.
+    pub(crate) fn number(&self) -> Option<(&'static str, f64)> {
+        let name = if matches!(self, Self::Lag(..)) { "lag" } else { "offset" };
+        self.size().map(|size| (name, size))
+    }
+
     /// Returns the hypothesis as a clause.
     #[must_use]
     pub fn clause(&self, robot: &Robot) -> String {

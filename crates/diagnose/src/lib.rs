@@ -5,6 +5,9 @@
 //!
 //! - [`RobotMisfit`] compares the recorded input with the one that a known robot needs.
 //! - [`FreeMisfit`] leaves the robot's parameters free.
+//! - [`Described`] compares recorded torques with the ones that a description needs: whether they
+//!   contain gravity, along which direction, and in which unit. Each [`Contradiction`] has its
+//!   number and remedy.
 //!
 //! [`Agreement`] is the measure of how recorded torques follow the ones that a robot needs, and
 //! [`input`] what recorded torques mean for a robot.
@@ -12,17 +15,23 @@
 mod agreement;
 mod axes;
 mod change;
+mod contradiction;
+mod described;
 mod free_misfit;
 mod hypothesis;
 mod likeliest;
+mod moments;
 mod reading;
 mod robot_misfit;
+mod signals;
 
 pub use agreement::{Agreement, median};
 pub use axes::{axes, input};
 pub use change::Change;
-pub use free_misfit::{FreeMisfit, Signals};
+pub use contradiction::Contradiction;
+pub use described::Described;
+pub use free_misfit::FreeMisfit;
 pub use hypothesis::{Columns, Hypothesis};
-pub use likeliest::likeliest_fault;
 pub use reading::gains;
 pub use robot_misfit::RobotMisfit;
+pub use signals::Signals;

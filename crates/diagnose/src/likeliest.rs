@@ -1,9 +1,12 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
+use reachtube_recordings::Torque;
+use reachtube_robot::Robot;
 
-use crate::free_misfit::FreeMisfit;
+use crate::change::Change;
 use crate::hypothesis::{Columns, Hypothesis};
+use crate::signals::{Signals, move_alike};
 
 /// A fault is reported if the product of the joints' shares of the squared residuals that remain
 /// without it is below this value.
@@ -17,6 +20,19 @@ const LAGS: [f64; 8] = [0.02, -0.02, 0.05, -0.05, 0.1, -0.1, 0.2, -0.2];
 
 /// Rounds in which the size of an offset or lag is refined, each with half the step.
 const REFINEMENTS: usize = 7;
+
+/// What remains unexplained of recorded torques.
+pub(crate) trait Misfit: Sync {
+    /// Returns the robot.
+    fn robot(&self) -> &Robot;
+
+    /// Returns the recordings.
+    fn recordings(&self) -> &[Signals<'_>];
+
+    /// Returns the root mean square of what remains of each joint's torque, N m, as `change` reads
+    /// the recordings; `None` for too few samples, which anything would explain.
+    fn sizes(&self, change: &Change) -> Option<Vec<f64>>;
+}
 
 /// A fault of the columns, and what remains of the squared residuals without it.
 struct Tried {
@@ -35,23 +51,28 @@ struct Tried {
 /// enough. Where the recordings do not determine all combinations of parameters (`is_determined`),
 /// a false reading may explain a short motion better than the right one, because the open
 /// parameters adapt to it. Only degrees are then looked for.
-#[must_use]
-pub fn likeliest_fault(
-    misfit: &FreeMisfit,
+pub(crate) fn likeliest_fault(
+    misfit: &dyn Misfit,
     is_determined: bool,
 ) -> Option<(Hypothesis, (usize, f64))> {
-    let stated = misfit.stated();
+    let (robot, n) = (misfit.robot(), misfit.robot().joint_count());
+    let stated = Change::none(Torque::Motor, n);
     let here = misfit.sizes(&stated)?;
     let without = |fault: Hypothesis| {
-        let sizes = misfit.sizes(&fault.change(misfit.robot, &stated))?;
+        let sizes = misfit.sizes(&fault.change(robot, &stated))?;
         let shares = sizes.iter().zip(&here).map(|(size, here)| (size / here).powi(2));
         let score = shares.clone().map(f64::ln).sum();
         let clearest = shares.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some(Tried { fault, score, clearest })
     };
     let better = |a: &Tried, b: &Tried| a.score.total_cmp(&b.score);
-    let mut faults = faults(misfit.robot.joint_count());
+    let mut faults = faults(n);
     faults.retain(|fault| is_determined || *fault == Hypothesis::Degrees);
+    // Columns of joints that move alike cannot be told apart.
+    faults.retain(|fault| match fault {
+        Hypothesis::Swap(joints, _) => !move_alike(misfit.recordings(), n, *joints),
+        _ => true,
+    });
     let mut best = faults.into_par_iter().filter_map(without).min_by(better)?;
     // The size of an offset or lag.
     let mut step = 0.5 * best.fault.size().unwrap_or(0.0);

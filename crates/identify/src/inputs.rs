@@ -11,6 +11,7 @@ use crate::prepare::velocity::velocity_warnings;
 use crate::samples::{Sampling, most_samples};
 use crate::settings::IdentifySettings;
 use rayon::prelude::*;
+use reachtube_diagnose::Signals;
 use reachtube_robot::{JointKind, Robot};
 use std::path::Path;
 
@@ -208,6 +209,13 @@ fn described(sampling: &Sampling, moving: &[&PreparedLog], robot: &Robot) -> Str
         slow.join(", "),
         JointKind::column(&robot.kinds(), JointKind::velocity_unit).list()
     )
+}
+
+/// Returns what a diagnosis takes of recordings that were filtered with a cut-off \[Hz\].
+pub fn signals(logs: &[PreparedLog], cut_off: f64) -> Vec<Signals<'_>> {
+    let Some(first) = logs.first() else { return Vec::new() };
+    let slow = slow_speeds(&logs.iter().collect::<Vec<_>>(), first.joints, None);
+    logs.iter().map(|log| log.signals(&slow, MARGIN_PERIODS / cut_off)).collect()
 }
 
 /// Returns the lowest and the highest velocity of each joint \[rad/s\].

@@ -72,6 +72,7 @@ pub use friction::fit::{FrictionFit, JointFriction};
 pub use friction::form::CoulombForm;
 pub use identification::{Identification, identify};
 pub use inertia::{BaseParameter, InertiaFit, PhysicalFit, SaturatingFriction};
+pub use inputs::signals;
 pub use plausibility::{Gain, Implausible, PositionOffset};
 pub use regression::triangular_factor::TriangularFactor;
 pub use settings::{IdentifySettings, ModelSettings};

@@ -77,12 +77,19 @@ fn sentence(text: &str) -> String {
     format!("{}{rest}.", first.to_ascii_uppercase())
 }
 
-/// Makes contradictions warnings if factors of the torques are given: they state that the torques
-/// are right.
+/// What no factor of the torques mends, by the numbers of the findings.
+const NOT_OF_TORQUES: [&str; 3] = ["gravity", "angle", "offset"];
+
+/// Makes contradictions in the torques warnings if their factors are given: they state that the
+/// torques are right.
 pub(crate) fn unless_accepted(findings: Vec<Finding>, given: &Choices) -> Vec<Finding> {
     if given.gains.is_empty() {
         return findings;
     }
-    let accepted = |finding| Finding { severity: Severity::Warning, ..finding };
+    let accepted = |finding: Finding| {
+        let is_of_torques = NOT_OF_TORQUES.iter().all(|name| !finding.numbers.contains_key(*name));
+        let severity = if is_of_torques { Severity::Warning } else { finding.severity };
+        Finding { severity, ..finding }
+    };
     findings.into_iter().map(accepted).collect()
 }

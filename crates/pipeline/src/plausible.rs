@@ -1,22 +1,13 @@
 //! Whether recorded torques are what the robot's description needs, up to sign and size.
 
-use reachtube_diagnose::{Agreement, median};
-use reachtube_finding::{Finding, Remedy};
+use reachtube_diagnose::{Contradiction, Described};
+use reachtube_finding::{Finding, Remedy, Severity};
 use reachtube_identify::prepare::{PreparedLog, RawLog};
+use reachtube_identify::signals;
 use reachtube_recordings::{Run, Torque, dead_torques};
 use reachtube_robot::Robot;
 
 use crate::findings::contradiction;
-
-/// Torques whose median size differs from what the description needs by more than this factor are
-/// remarked. Published descriptions are off by a factor of 3 at times.
-const FACTOR: f64 = 5.0;
-
-/// A correlation below the negative of this shows a wrong sign.
-const OPPOSITE: f64 = 0.5;
-
-/// Samples of a recording that are looked at, at most.
-const SAMPLES: usize = 2000;
 
 /// Returns what contradicts the robot's description in the torques of filtered recordings, and a
 /// finding if most joints' torques do not follow it. The torques must still contain gravity. A
@@ -25,46 +16,34 @@ pub(crate) fn contradictions(
     robot: &Robot,
     kind: Torque,
     logs: &[PreparedLog],
+    cut_off: f64,
 ) -> (Vec<Finding>, Option<Finding>) {
     let n = robot.joint_count();
     let is_bare = robot.inertial_parameters().iter().all(|parameter| *parameter == 0.0);
     if is_bare || robot.check_physical().is_err() || logs.is_empty() {
         return (Vec::new(), None);
     }
-    // Sensors behind the gears do not show what the motors' inertia takes.
-    let of_motors = |joint: usize, qdd: f64| match kind {
-        Torque::Link => robot.joints()[joint].armature * qdd,
-        Torque::Motor | Torque::Compensated => 0.0,
-    };
-    let mut joints = vec![Agreement::default(); n];
-    for log in logs {
-        for k in (0..log.len()).step_by((log.len() / SAMPLES).max(1)) {
-            let torque = robot.inverse_dynamics(log.q(k), log.qd(k), log.qdd(k));
-            for (joint, agreement) in joints.iter_mut().enumerate() {
-                let needed = torque[joint] - of_motors(joint, log.qdd(k)[joint]);
-                agreement.add(needed, log.tau(k)[joint]);
-            }
-        }
+    let (found, count) = Described::new(robot, kind, signals(logs, cut_off)).contradictions();
+    (found.iter().map(|found| described(robot, found)).collect(), few_explained(count, n))
+}
+
+/// Makes the finding about a contradiction to the description.
+fn described(robot: &Robot, found: &Contradiction) -> Finding {
+    let severity = if found.is_certain { Severity::Failure } else { Severity::Warning };
+    let names: Vec<&str> =
+        found.joints.iter().map(|joint| robot.joints()[*joint].name.as_str()).collect();
+    let remedy = found.remedy.clone().map(|[setting, value, effect]| Remedy {
+        setting: setting.into(),
+        value,
+        effect: effect.into(),
+    });
+    Finding {
+        severity,
+        place: (!names.is_empty()).then(|| names.join(", ")),
+        numbers: found.number.iter().map(|(name, value)| (name.to_string(), *value)).collect(),
+        remedy,
+        ..contradiction(&found.text)
     }
-    let follows: Vec<[f64; 2]> = joints.iter().map(Agreement::follows).collect();
-    let explained = || follows.iter().filter(|[correlation, _]| correlation.abs() > OPPOSITE);
-    let mut found = Vec::new();
-    // The size of all torques comes first: a sign is about one joint.
-    let factor = median(explained().map(|[_, gain]| gain.abs())).unwrap_or(1.0);
-    if !(1.0 / FACTOR..=FACTOR).contains(&factor) {
-        found.push(wrong_size(factor));
-    }
-    let few = few_explained(explained().count(), n);
-    let opposite = (0..n).filter(|joint| follows[*joint][0] < -OPPOSITE);
-    let names: Vec<&str> = opposite.map(|joint| robot.joints()[joint].name.as_str()).collect();
-    let names = names.join(", ");
-    if !names.is_empty() {
-        let text = format!(
-            "the torque of {names} is opposite to what the description needs: its sign may be wrong"
-        );
-        found.push(Finding { place: Some(names), ..contradiction(&text) });
-    }
-    (found, few)
 }
 
 /// Returns a finding if a description explains the torque of few joints of all.
@@ -75,23 +54,6 @@ fn few_explained(joints: usize, of: usize) -> Option<Finding> {
     );
     let numbers = [("joints".to_string(), joints as f64)].into();
     (2 * joints < of).then(|| Finding { numbers, ..contradiction(&text) })
-}
-
-/// Makes the finding that torques are `factor` times what a description needs.
-fn wrong_size(factor: f64) -> Finding {
-    let text = format!(
-        "the recorded torques are {factor:.2} times what the description needs: they may be \
-         currents, or of another unit, or the description may be of another robot"
-    );
-    let remedy = Remedy {
-        setting: "gains".into(),
-        value: String::new(),
-        effect: "turns currents in A into torques by factors in N m/A; factors of 1 state that \
-                 they are torques already."
-            .into(),
-    };
-    let numbers = [("factor".to_string(), factor)].into();
-    Finding { numbers, remedy: Some(remedy), ..contradiction(&text) }
 }
 
 /// Returns the joints that move while their torque stays the same in every sample, as a finding.
@@ -147,13 +109,17 @@ mod tests {
         let found = |factor: f64| -> Vec<String> {
             let (robot, raw) = recorded(factor);
             let log = reachtube_identify::prepare::unfiltered(&raw, &[]).unwrap();
-            let (found, few) = contradictions(&robot, Torque::Motor, &[log]);
+            let (found, few) = contradictions(&robot, Torque::Motor, &[log], 10.0);
             assert_eq!(few, None);
             found.iter().map(ToString::to_string).collect()
         };
         assert_eq!(found(1.0), Vec::<String>::new());
-        assert!(found(-1.0)[0].starts_with("The torque of hinge is opposite"), "{:?}", found(-1.0));
-        assert!(found(0.1)[0].contains("0.10 times"), "{:?}", found(0.1));
+        assert!(
+            found(-1.0)[0].starts_with("All recorded torques have the opp"),
+            "{:?}",
+            found(-1.0)
+        );
+        assert!(found(0.1)[0].contains("of hinge are 0.10 times"), "{:?}", found(0.1));
     }
 
     #[test]

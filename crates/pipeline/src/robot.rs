@@ -78,9 +78,13 @@ impl Evidence<'_> {
         if is_wrong && contradictions.is_empty() {
             contradictions.extend(few_explained);
         }
-        // An identification tells exchanged columns, and the description a sign and a scale.
-        if !chosen.is_swapped && !contradictions.is_empty() {
-            chosen.findings.retain(|finding| finding.severity < Severity::Failure);
+        // What contradicts the description has tried more, unless columns are exchanged, which
+        // only an identification tells; that then has no other cause.
+        let is_certain = contradictions.iter().any(|found| found.severity == Severity::Failure);
+        if is_certain && !chosen.is_swapped {
+            chosen.findings.clear();
+        }
+        if !chosen.is_swapped {
             chosen.findings.splice(0..0, contradictions);
         }
         Ok(chosen)
@@ -162,10 +166,19 @@ impl Evidence<'_> {
         if self.torque == Torque::Compensated {
             return Ok((Vec::new(), None));
         }
+        let logs = self.filtered()?;
+        Ok(contradictions(described, self.torque, &logs, self.cut_off))
+    }
+
+    /// Returns the recordings as the robot's are, with their torques.
+    fn filtered(&self) -> Result<Vec<PreparedLog>> {
         let raw: Vec<RawLog> =
             self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
-        let logs = prepare(&raw, self.settings, self.cut_off, None)?.logs;
-        Ok(contradictions(described, self.torque, &logs))
+        if self.torque == Torque::Compensated {
+            let logs = raw.iter().map(|log| unfiltered(log, &self.settings.gains));
+            return Ok(logs.collect::<std::result::Result<_, _>>()?);
+        }
+        Ok(prepare(&raw, self.settings, self.cut_off, None)?.logs)
     }
 
     /// Identifies the robot from what is not held out.
@@ -226,7 +239,7 @@ impl Evidence<'_> {
     }
 
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of
-    /// the root mean square of what is left by the root mean square of the torque.
+    /// the root mean square of what is left by that of the torque, both filtered alike.
     fn unexplained(&self, nominal: &Nominal) -> Result<f64> {
         let of = if nominal.is_identified { "identified robot" } else { "description" };
         let part = self.trial.journal.step(&format!("torque, {of}"), || {
@@ -250,13 +263,13 @@ impl Evidence<'_> {
             Err(_) => return Ok(f64::INFINITY),
         };
         let errors = answer.found.input_error;
-        let gains = self.settings.gain_of_each_joint(errors.len())?;
+        // The torques are filtered as the errors are, which contain no noise beyond the cut-off.
+        let logs = self.filtered()?;
         let torque = |joint: usize| {
-            let runs = self.motions.iter().map(|motion| &motion.log.run);
-            let values = runs.flat_map(|run| (0..run.len()).map(move |k| run.torque(k)[joint]));
+            let values = logs.iter().flat_map(|log| log.tau.iter().skip(joint).step_by(log.joints));
             let (sum, count) =
                 values.fold((0.0, 0usize), |(sum, count), tau| (sum + tau * tau, count + 1));
-            gains[joint].abs() * (sum / count.max(1) as f64).sqrt()
+            (sum / count.max(1) as f64).sqrt()
         };
         let parts = errors.iter().enumerate().map(|(joint, error)| error / torque(joint).max(1e-9));
         Ok(parts.sum::<f64>() / errors.len() as f64)

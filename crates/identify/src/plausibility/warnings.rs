@@ -7,7 +7,7 @@ use crate::plausibility::offset::independent_columns;
 use crate::plausibility::scale::torque_unit_warning;
 use crate::prepare::log::{PreparedLog, spread};
 use crate::samples::{KnownTorque, Samples, Sampling};
-use reachtube_diagnose::{Columns, FreeMisfit, Hypothesis, Signals, likeliest_fault};
+use reachtube_diagnose::{Columns, FreeMisfit, Hypothesis};
 use reachtube_robot::{FrictionDescription, ParameterKind, Robot};
 
 /// Standard errors by which a gain must differ from 1 to be reported.
@@ -89,15 +89,11 @@ impl Checked<'_> {
     /// Returns the fault of the columns that explains the torque best, if one does.
     fn likeliest_fault(&self) -> Option<(Hypothesis, (usize, f64))> {
         let Sampling { slow, margin, .. } = self.sampling;
-        let signals = spread(self.logs, MOST_LOGS).into_iter().map(|log| Signals {
-            step: log.step,
-            motion: [&log.q, &log.qd, &log.qdd],
-            torques: &log.tau,
-            moves: log.moving_mask(slow, *margin),
-        });
+        let logs = spread(self.logs, MOST_LOGS).into_iter();
+        let signals = logs.map(|log| log.signals(slow, *margin));
         let columns = independent_columns(self.robot, &self.samples.columns);
         let misfit = FreeMisfit::new(self.robot, columns, signals.collect());
-        likeliest_fault(&misfit, self.fit.determined == self.fit.parameters.len())
+        misfit.likeliest_fault(self.fit.determined == self.fit.parameters.len())
     }
 
     /// Returns whether other recordings of the same motions have plausible gains.

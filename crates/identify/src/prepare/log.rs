@@ -1,3 +1,5 @@
+use reachtube_diagnose::Signals;
+
 /// A recording prepared for regression: K evenly spaced samples of n joints, filtered without
 /// phase shift.
 #[derive(Debug, Clone, PartialEq)]
@@ -145,6 +147,16 @@ impl PreparedLog {
             }
         }
         moves
+    }
+
+    /// Returns the log for a diagnosis, with the joints that [move](Self::moving_mask).
+    pub(crate) fn signals(&self, slow: &[f64], margin: f64) -> Signals<'_> {
+        Signals {
+            step: self.step,
+            motion: [&self.q, &self.qd, &self.qdd],
+            torques: &self.tau,
+            moves: self.moving_mask(slow, margin),
+        }
     }
 
     /// Returns the log of the samples in `range`.
