@@ -22,8 +22,8 @@ pub fn beyond_proof_of_stops(model: &Model, problem: &Problem) -> Vec<Finding> {
 fn no_motors(model: &Model) -> Option<Finding> {
     let preparation = model.preparation.as_ref().map(|done| done.torque);
     let is_behind = [Some(model.arm().settings.torque), preparation].contains(&Some(Torque::Link));
-    let text = "The torques were measured behind the gears, so that the model has no inertia of the \
-                motors. Brakes have to stop the motors, too: the ways are longer.";
+    let text = "The torques were measured behind the gears, so that the model has no inertia of \
+                the motors. Brakes have to stop the motors, too: the ways are longer.";
     is_behind.then(|| Finding::new(Severity::Warning, Code::BeyondProof, text))
 }
 

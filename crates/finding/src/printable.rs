@@ -1,3 +1,6 @@
+/// Largest number of columns of a line.
+pub(crate) const COLUMNS: usize = 100;
+
 /// Returns text in which control characters are written as escapes, except the ends of lines. Names
 /// in files can hold codes that would move the cursor of a terminal or change its colours.
 ///

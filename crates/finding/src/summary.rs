@@ -1,14 +1,10 @@
 use std::fmt;
 
-use crate::printable::printable;
-
+use crate::printable::{COLUMNS, printable};
 use crate::table::Table;
 
 /// Largest number of lines.
 const LINES: usize = 15;
-
-/// Largest number of columns.
-pub(crate) const COLUMNS: usize = 100;
 
 /// Smallest number of rows that a table keeps.
 const FEWEST_ROWS: usize = 2;

@@ -1,7 +1,6 @@
 use std::fmt;
 
-use crate::printable::printable;
-use crate::summary::COLUMNS;
+use crate::printable::{COLUMNS, printable};
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -13,11 +13,11 @@ use reachtube_finding::Finding;
 use crate::carried_over::{Unseen, unseen};
 use crate::error::Result;
 use crate::findings::not_enclosed;
+use crate::foretold::Foretold;
 use crate::prediction::upper_bound;
 use crate::rounding::rounded_up;
 use crate::trial::Trial;
 use crate::windows::Prepared;
-use crate::without_model::Foretold;
 
 /// Sets with an allowance.
 pub(crate) struct Widened {

@@ -157,9 +157,8 @@ impl Decided<'_> {
         let Widened { mut answer, finding, foretold, .. } = found;
         findings.extend(finding);
         let horizon = chooser.choices.horizon.unwrap_or_default();
-        let is_kinematic = trial.equations.is_kinematic();
         let without = || WithoutModel::new(&trial, &recordings, horizon, &foretold);
-        let without_model = (!is_kinematic).then(without).transpose()?;
+        let without_model = (!trial.equations.is_kinematic()).then(without).transpose()?;
         let choices = &chooser.choices;
         answer.model = answer.model.with_preparation(preparation(choices, torque));
         let wide =
@@ -176,17 +175,15 @@ impl Decided<'_> {
             split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
         let held_back = prepare_for(&raw, &robot, torque, settings, cut_off)?;
         let held_back = Prepared { logs: &held_back, divides: false, ..recordings };
-        let are_whole = split.are_motions_whole();
-        let compared = Compared::new(&answer, &recordings, &held_back, horizon, are_whole)?;
-        let Compared { held_out, shown, shown_held_out } = compared;
-        let notes = read.0.into_iter().chain(ignored_motors(&robot, torque)).collect();
+        let Compared { held_out, shown, shown_held_out } =
+            Compared::new(&answer, &recordings, &held_back, horizon, split.are_motions_whole())?;
         findings.extend(read.1.into_iter().chain(held_out.finding(choices)));
         Ok(Built {
             answer,
+            notes: read.0.into_iter().chain(ignored_motors(&robot, torque)).collect(),
             robot,
             choices: chooser.choices,
             made: chooser.made,
-            notes,
             findings,
             horizons,
             held_out,

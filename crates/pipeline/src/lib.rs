@@ -16,6 +16,7 @@ mod files;
 mod findings;
 mod first_choices;
 mod fold;
+mod foretold;
 mod held_out;
 mod horizon;
 mod joint_row;

@@ -1,14 +1,14 @@
 //! What the recordings say without a model of the robot: the least that a model must beat.
 //!
-//! A joint whose acceleration lies in a box needs no robot and no torque. Its sets are found, proved
-//! and left out of in turn by the same steps as those of the model, over the same windows, so that
-//! both can be compared: each with the factor by which the sets of the others have to grow for the
-//! motion that leaves them furthest.
+//! A joint whose acceleration lies in a box needs no robot and no torque. Its sets are found,
+//! proved and left out of in turn by the same steps as those of the model, over the same windows,
+//! so that both can be compared: each with the factor by which the sets of the others have to grow
+//! for the motion that leaves them furthest.
 
 use std::collections::BTreeMap;
 
 use reachtube_arm::{ArmModel, Equations};
-use reachtube_conform::{Answer, CheckJob, Silent};
+use reachtube_conform::{CheckJob, Silent};
 use reachtube_finding::Table;
 use reachtube_identify::prepare::PreparedLog;
 use reachtube_scalar::number::significant;
@@ -16,23 +16,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::allowance::Widened;
-use crate::carried_over::Unseen;
 use crate::error::Result;
+use crate::foretold::Foretold;
 use crate::horizon::MOST_WINDOWS;
 use crate::trial::Trial;
 use crate::windows::Prepared;
-
-/// The sets of a model at the horizon, as wide as a motion needs them that they have not seen.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Foretold {
-    /// Half the width of the set of each joint's position for the recordings, n, rad (m).
-    half_widths: Vec<f64>,
-    /// The displacement of each joint, n, rad (m).
-    displacements: Vec<f64>,
-    /// The factor by which the sets of the other motions enclose each motion; at least 1, and
-    /// infinite if none does.
-    factor: f64,
-}
 
 /// Sets without a model beside those of the model.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -51,29 +39,6 @@ pub struct WithoutModel {
     /// Part of the rows of the faster half of the motions that lie outside the sets of the slower
     /// half: of the model, and without one. `None` for a single motion.
     pub faster: Option<[f64; 2]>,
-}
-
-impl Foretold {
-    /// Takes the sets of an answer before they were widened, and motions that were left out.
-    pub(crate) fn new(answer: &Answer, left_out: &[Unseen]) -> Self {
-        let joints = &answer.found.usefulness.parts;
-        let gauge = |unseen: &Unseen| unseen.left_out.gauge.unwrap_or(f64::INFINITY);
-        Self {
-            half_widths: joints.iter().map(|own| own.half_width.unwrap_or(f64::INFINITY)).collect(),
-            displacements: joints.iter().map(|own| own.displacement).collect(),
-            factor: left_out.iter().map(gauge).fold(1.0, f64::max),
-        }
-    }
-
-    fn half_width(&self, joint: usize) -> f64 {
-        self.factor * self.half_widths[joint]
-    }
-
-    /// Returns half the width of the widest set by the joint's displacement.
-    fn widest(&self) -> f64 {
-        let ratio = |joint: usize| self.half_width(joint) / self.displacements[joint];
-        (0..self.half_widths.len()).map(ratio).fold(0.0, f64::max)
-    }
 }
 
 impl WithoutModel {
@@ -111,8 +76,8 @@ impl WithoutModel {
         })
     }
 
-    /// Returns whether the model is worth having: its sets are narrower than without one, and no more
-    /// rows of faster motions lie outside.
+    /// Returns whether the model is worth having: its sets are narrower than without one, and no
+    /// more rows of faster motions lie outside.
     #[must_use]
     pub(crate) fn is_model_better(&self) -> bool {
         self.gain() > 1.0 && self.faster.is_none_or(|[own, without]| own <= without)
@@ -266,18 +231,6 @@ mod tests {
         assert!(slower.why_better().starts_with("of faster motions 40 % of the rows leave"));
         // Neither foretells anything.
         assert!(!compared(vec![f64::NAN], None).is_model_better());
-    }
-
-    #[test]
-    fn widths_have_the_factor_of_motions_that_were_left_out() {
-        let foretold = |half_width, factor| Foretold {
-            half_widths: vec![half_width, 0.1],
-            displacements: vec![2.0, 1.0],
-            factor,
-        };
-        assert_eq!(foretold(0.4, 1.5).widest(), 0.30000000000000004);
-        assert_eq!(foretold(0.1, 2.0).widest(), 0.2);
-        assert_eq!(foretold(0.1, f64::INFINITY).widest(), f64::INFINITY);
     }
 
     #[test]

@@ -182,8 +182,9 @@ impl Monitor {
         self.begin_task(healthy.shape.clone(), Task::Watch { ranges, outside })
     }
 
-    /// Returns what the samples that were pushed last show to be unlike healthy motion; nothing unless [`watch`](Self::watch) was called. Each alarm is raised once, when
-    /// a number leaves its range.
+    /// Returns what the samples that were pushed last show to be unlike healthy motion; nothing
+    /// unless [`watch`](Self::watch) was called. Each alarm is raised once, when a number leaves
+    /// its range.
     #[must_use]
     pub fn alarms(&self) -> &[Alarm] {
         &self.judge.alarms

@@ -1,0 +1,55 @@
+use reachtube_conform::Answer;
+
+use crate::carried_over::Unseen;
+
+/// The sets of a model at the horizon, as wide as a motion needs them that they have not seen.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Foretold {
+    /// Half the width of the set of each joint's position for the recordings, n, rad (m).
+    half_widths: Vec<f64>,
+    /// The displacement of each joint, n, rad (m).
+    displacements: Vec<f64>,
+    /// The factor by which the sets of the other motions enclose each motion; at least 1, and
+    /// infinite if none does.
+    factor: f64,
+}
+
+impl Foretold {
+    /// Takes the sets of an answer before they were widened, and motions that were left out.
+    pub(crate) fn new(answer: &Answer, left_out: &[Unseen]) -> Self {
+        let joints = &answer.found.usefulness.parts;
+        let gauge = |unseen: &Unseen| unseen.left_out.gauge.unwrap_or(f64::INFINITY);
+        Self {
+            half_widths: joints.iter().map(|own| own.half_width.unwrap_or(f64::INFINITY)).collect(),
+            displacements: joints.iter().map(|own| own.displacement).collect(),
+            factor: left_out.iter().map(gauge).fold(1.0, f64::max),
+        }
+    }
+
+    pub(crate) fn half_width(&self, joint: usize) -> f64 {
+        self.factor * self.half_widths[joint]
+    }
+
+    /// Returns half the width of the widest set by the joint's displacement.
+    pub(crate) fn widest(&self) -> f64 {
+        let ratio = |joint: usize| self.half_width(joint) / self.displacements[joint];
+        (0..self.half_widths.len()).map(ratio).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_have_the_factor_of_motions_that_were_left_out() {
+        let foretold = |half_width, factor| Foretold {
+            half_widths: vec![half_width, 0.1],
+            displacements: vec![2.0, 1.0],
+            factor,
+        };
+        assert_eq!(foretold(0.4, 1.5).widest(), 0.30000000000000004);
+        assert_eq!(foretold(0.1, 2.0).widest(), 0.2);
+        assert_eq!(foretold(0.1, f64::INFINITY).widest(), f64::INFINITY);
+    }
+}
