@@ -140,7 +140,7 @@ fn parameters_words(cause: &Cause) -> (String, &'static str, String) {
     let left = percent(*unexplained);
     let words = if *unexplained > UNRELATED {
         format!(
-            "Of the recorded input, {left} does not follow from the recorded motion, however it is \
+            "The recorded motion does not explain {left} of the recorded input, however it is \
              read. Check that the torques were measured, and with these motions. {what_to_do}"
         )
     } else {
@@ -150,7 +150,7 @@ fn parameters_words(cause: &Cause) -> (String, &'static str, String) {
             false => "N mm, kN m, the opposite sign or another kind of the torques, ",
         };
         format!(
-            "Of the recorded input, {left} does not follow from the recorded motion. Tried without \
+            "The recorded motion does not explain {left} of the recorded input. Tried without \
              gain: {of_all}degrees, a wrong sign or order of single torques, and torques up to \
              0.2 s late. {what_to_do}"
         )

@@ -79,7 +79,7 @@ impl Drive for Kinematic {
         self.0.record(system)
     }
 
-    /// Returns the arm, for those that ask for its links.
+    /// Returns the arm, for callers that need its links.
     fn any(&self) -> &dyn Any {
         &self.0
     }

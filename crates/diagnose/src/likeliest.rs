@@ -68,7 +68,7 @@ pub(crate) fn likeliest_fault(
     let better = |a: &Tried, b: &Tried| a.score.total_cmp(&b.score);
     let mut faults = faults(n);
     faults.retain(|fault| is_determined || *fault == Hypothesis::Degrees);
-    // Columns of joints that move alike cannot be told apart.
+    // Columns of joints that move alike have the same effect.
     faults.retain(|fault| match fault {
         Hypothesis::Swap(joints, _) => !move_alike(misfit.recordings(), n, *joints),
         _ => true,

@@ -239,7 +239,8 @@ impl Evidence<'_> {
     }
 
     /// Returns the part of the torque that a robot does not explain: the mean over the joints of
-    /// the root mean square of what is left by that of the torque, both filtered alike.
+    /// the root mean square of what is left by the root mean square of the torque, both filtered
+    /// alike.
     fn unexplained(&self, nominal: &Nominal) -> Result<f64> {
         let of = if nominal.is_identified { "identified robot" } else { "description" };
         let part = self.trial.journal.step(&format!("torque, {of}"), || {

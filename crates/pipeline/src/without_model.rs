@@ -1,7 +1,7 @@
 //! What the recordings say without a model of the robot: the least that a model must beat.
 //!
 //! A joint whose acceleration lies in a box needs no robot and no torque. Its sets are found,
-//! proved and left out of in turn by the same steps as those of the model, over the same windows,
+//! proved and left out of in turn by the same steps as the sets of the model, over the same windows,
 //! so that both can be compared: each with the factor by which the sets of the others have to grow
 //! for the motion that leaves them furthest.
 
@@ -22,7 +22,7 @@ use crate::horizon::MOST_WINDOWS;
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
-/// Sets without a model beside those of the model.
+/// Sets without a model beside the sets of the model.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WithoutModel {
     /// What stands in place of the robot's motion.

@@ -22,8 +22,8 @@ pub struct PreparedLog {
     pub tau: Vec<f64>,
     /// Temperatures of the joints \[°C\], row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
-    /// What is known of each sample from those before it alone ([`Run::before`]), row-major K x
-    /// 3n; empty if nothing is.
+    /// Estimates of each sample from earlier samples alone ([`Run::before`]), row-major K x 3n;
+    /// empty if there are none.
     ///
     /// [`Run::before`]: reachtube_recordings::Run::before
     pub before: Vec<f64>,

@@ -48,7 +48,7 @@ impl<'a> Signals<'a> {
         Lag::contradict(&lags, self.step)
     }
 
-    /// Returns what is known of each sample from the last `span` \[s\] alone, K x 3n.
+    /// Returns estimates of each sample from the last `span` \[s\] alone, K x 3n.
     pub(super) fn before(&self, span: f64, differentiated: bool) -> Vec<f64> {
         let n = self.raw.run.joints;
         let past = Past::new(span, self.step, !differentiated);
