@@ -1,7 +1,7 @@
 //! What the recordings say without a model of the robot: the least that a model must beat.
 //!
 //! A joint whose acceleration lies in a box needs no robot and no torque. Its sets are found,
-//! proved and left out of in turn by the same steps as the sets of the model, over the same windows,
+//! proved and left out in turn by the same steps as the sets of the model, over the same windows,
 //! so that both can be compared: each with the factor by which the sets of the others have to grow
 //! for the motion that leaves them furthest.
 
