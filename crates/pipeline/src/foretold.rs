@@ -6,7 +6,7 @@ use crate::carried_over::Unseen;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Foretold {
     /// Half the width of the set of each joint's position for the recordings, n, rad (m).
-    half_widths: Vec<f64>,
+    pub half_widths: Vec<f64>,
     /// The displacement of each joint, n, rad (m).
     displacements: Vec<f64>,
     /// The factor by which the sets of the other motions enclose each motion; at least 1, and
