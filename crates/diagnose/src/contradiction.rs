@@ -122,6 +122,7 @@ fn digits(value: f64) -> String {
         100.0.. => format!("{value:.0}"),
         10.0..100.0 => format!("{value:.1}"),
         0.1..10.0 => format!("{value:.2}"),
+        0.01..0.1 => format!("{value:.3}"),
         _ => format!("{value:.2e}"),
     }
 }

@@ -9,6 +9,8 @@
 //!   contain gravity, along which direction, and in which unit. Each [`Contradiction`] has its
 //!   number and remedy.
 //!
+//! [`wrong_samples`] finds samples that cannot be right whatever the robot is.
+//!
 //! [`Agreement`] is the measure of how recorded torques follow the ones that a robot needs, and
 //! [`input`] what recorded torques mean for a robot.
 
@@ -23,6 +25,7 @@ mod likeliest;
 mod moments;
 mod reading;
 mod robot_misfit;
+mod samples;
 mod signals;
 
 pub use agreement::{Agreement, median};
@@ -34,4 +37,5 @@ pub use free_misfit::FreeMisfit;
 pub use hypothesis::{Columns, Hypothesis};
 pub use reading::gains;
 pub use robot_misfit::RobotMisfit;
+pub use samples::{WrongSamples, wrong_samples};
 pub use signals::Signals;

@@ -15,7 +15,7 @@ use reachtube_robot::Robot;
 use crate::error::Result;
 use crate::findings::{contradiction, implausible};
 use crate::held_out::Recording;
-use crate::plausible::{contradictions, unmeasured};
+use crate::plausible::{contradictions, unmeasured, wrong};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 
@@ -163,11 +163,14 @@ impl Evidence<'_> {
         if let Some(finding) = unmeasured(described, &logs) {
             return Ok((vec![finding], None));
         }
+        let mut found = wrong(described, &logs);
         if self.torque == Torque::Compensated {
-            return Ok((Vec::new(), None));
+            return Ok((found, None));
         }
         let logs = self.filtered()?;
-        Ok(contradictions(described, self.torque, &logs, self.cut_off))
+        let (of_torques, few) = contradictions(described, self.torque, &logs, self.cut_off);
+        found.extend(of_torques);
+        Ok((found, few))
     }
 
     /// Returns the recordings as the robot's are, with their torques.

@@ -23,6 +23,9 @@ const PLAUSIBLE_RATIO: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 const TIME_UNITS: [(&str, f64); 3] =
     [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
 
+/// Revolutions per minute in 1 rad/s.
+const RPM: f64 = 30.0 / PI;
+
 /// Relative deviation from a ratio up to which its unit is recognised.
 const UNIT_TOLERANCE: f64 = 0.3;
 
@@ -186,6 +189,11 @@ fn ratio_defects(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
             format!("q looks like {other} and qd like {speed}")
         } else if (slope * ratio - 1.0).abs() < UNIT_TOLERANCE {
             format!("q looks like {unit} and qd like {other}/s")
+        } else if axes[joint].is_revolute && (slope * RPM - 1.0).abs() < UNIT_TOLERANCE {
+            format!("q looks like {unit} and qd like revolutions per minute")
+        } else if (slope + 1.0).abs() < UNIT_TOLERANCE {
+            let problem = "qd is the slope of q with the opposite sign".to_string();
+            return Some(joint_defect(path, joint, problem, "multiply the column of qd by -1"));
         } else {
             return None;
         };
@@ -266,6 +274,27 @@ mod tests {
         assert_eq!(words(1.0), "");
         let dead = words(0.0);
         assert!(dead.contains("joint 3") && dead.contains("qd is 0 in every sample"), "{dead}");
+    }
+
+    #[test]
+    fn velocities_of_another_sign_or_in_revolutions_per_minute_are_a_defect() {
+        let words = |factor: f64| {
+            let state = |k: usize| {
+                let t = 0.1 * f64::from(k as u32);
+                let (q, qd) = (vec![t.sin(); 6], vec![factor * t.cos(); 6]);
+                [q, qd].concat()
+            };
+            let times = (0..40).map(|k| 0.1 * f64::from(k)).collect();
+            let states = (0..40).flat_map(state).collect();
+            let run = Run::new(6, times, states, vec![1.0; 240]).unwrap();
+            let mut axes = axes();
+            axes.iter_mut().for_each(|axis| axis.velocity_limit = None);
+            let defects = check_limits(Path::new("run.csv"), &run, &axes);
+            defects.first().map(ToString::to_string).unwrap_or_default()
+        };
+        assert_eq!(words(1.0), "");
+        assert!(words(-1.0).contains("slope of q with the opposite sign"), "{}", words(-1.0));
+        assert!(words(9.549).contains("like revolutions per minute"), "{}", words(9.549));
     }
 
     #[test]

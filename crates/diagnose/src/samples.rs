@@ -1,0 +1,229 @@
+use reachtube_recordings::Run;
+
+/// A jump is at least this far beyond what the velocity explains, rad or m, ...
+const LEAST_JUMP: f64 = 0.03;
+
+/// ... and this many times as far as the joint moves from one sample to the next at most.
+const JUMP: f64 = 5.0;
+
+/// A torque beyond this multiple of nearly all others of the joint is a wrong sample.
+const HUGE: f64 = 10.0;
+
+/// The part of the torques that is nearly all.
+const NEARLY_ALL: f64 = 0.99;
+
+/// Longest step that counts as one, in usual steps.
+const ONE_STEP: f64 = 1.9;
+
+/// Part of the samples that repeat the one before where a sensor is slower than the log.
+const REPEATED: f64 = 0.3;
+
+/// Positions below this may be zeros, rad or m.
+const NEAR_ZERO: f64 = 0.02;
+
+/// Samples that cannot be right.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WrongSamples {
+    /// The first of them, from 0; `None` if it is about all.
+    pub sample: Option<usize>,
+    /// The joint, from 0; `None` if it is about all.
+    pub joint: Option<usize>,
+    /// What is wrong, as the predicate of the joint or of the samples.
+    pub text: String,
+    /// Whether the samples are wrong for sure; else they are only few.
+    pub is_certain: bool,
+}
+
+/// Returns samples of a recording that cannot be right: rows of zeros, positions that jump, torques
+/// far beyond all others, and samples that repeat the one before.
+#[must_use]
+pub fn wrong_samples(run: &Run) -> Vec<WrongSamples> {
+    if run.len() < 16 {
+        return Vec::new();
+    }
+    let mut found: Vec<WrongSamples> = zeros(run).into_iter().collect();
+    if found.is_empty() {
+        found.extend((0..run.joints).filter_map(|joint| jump(run, joint)));
+        found.extend((0..run.joints).filter_map(|joint| huge_torque(run, joint)));
+    }
+    found.extend(repeated(run));
+    found
+}
+
+/// Returns the first row of zeros beside a position that is none.
+fn zeros(run: &Run) -> Option<WrongSamples> {
+    let is_zero = |k: usize| run.state(k).iter().chain(run.torque(k)).all(|value| *value == 0.0);
+    let is_away = |k: usize| k < run.len() && run.q(k).iter().any(|q| q.abs() > NEAR_ZERO);
+    let is_dropped = |k: &usize| is_zero(*k) && (is_away(k.wrapping_sub(1)) || is_away(k + 1));
+    let first = (0..run.len()).find(is_dropped)?;
+    let text = match (first..run.len()).take_while(|k| is_zero(*k)).count() {
+        1 => "is a row of zeros".into(),
+        count => format!("is the first of {count} rows of zeros"),
+    };
+    Some(WrongSamples { sample: Some(first), joint: None, text, is_certain: true })
+}
+
+fn usual_step(run: &Run) -> f64 {
+    let mut steps: Vec<f64> = run.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps[steps.len() / 2]
+}
+
+/// Returns the first jump of a joint's position that its velocity does not explain, and the number
+/// of jumps.
+fn jump(run: &Run, joint: usize) -> Option<WrongSamples> {
+    let usual = usual_step(run);
+    let step = |k: usize| run.times[k] - run.times[k - 1];
+    let fastest = (0..run.len()).map(|k| run.qd(k)[joint].abs()).fold(0.0, f64::max);
+    let moved = |k: usize| run.q(k)[joint] - run.q(k - 1)[joint];
+    let mut moves: Vec<f64> = (1..run.len()).map(|k| moved(k).abs()).collect();
+    moves.sort_by(f64::total_cmp);
+    // Velocities in a wrong unit explain no motion, and a few jumps are not the usual motion.
+    let usual_move = moves[((moves.len() - 1) as f64 * NEARLY_ALL) as usize];
+    let limit = LEAST_JUMP.max(JUMP * usual_move.max(fastest * usual));
+    let beyond = |k: usize| moved(k) - 0.5 * step(k) * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
+    let is_jump = |k: &usize| step(*k) < ONE_STEP * usual && beyond(*k).abs() > limit;
+    let jumps: Vec<usize> = (1..run.len()).filter(is_jump).collect();
+    let first = *jumps.first()?;
+    let is_back = jumps.len() == 2 && beyond(first) * beyond(jumps[1]) < 0.0;
+    let how = match jumps.len() {
+        1 => " in one sample".into(),
+        2 if is_back && jumps[1] == first + 1 => " in one sample and back".into(),
+        2 if is_back => format!(" for {} samples", jumps[1] - first),
+        count => format!(" in one sample, and {} times more", count - 1),
+    };
+    let text = format!(
+        "jumps by {:.3}{how}, where its velocity explains {:.3}",
+        moved(first),
+        moved(first) - beyond(first)
+    );
+    Some(WrongSamples { sample: Some(first), joint: Some(joint), text, is_certain: true })
+}
+
+/// Returns the first torque that is far beyond nearly all others.
+fn huge_torque(run: &Run, joint: usize) -> Option<WrongSamples> {
+    let sizes = || (0..run.len()).map(|k| run.torque(k)[joint].abs());
+    let mut sorted: Vec<f64> = sizes().collect();
+    sorted.sort_by(f64::total_cmp);
+    let usual = sorted[((sorted.len() - 1) as f64 * NEARLY_ALL) as usize];
+    let sample = sizes().position(|size| usual > 0.0 && size > HUGE * usual)?;
+    let text = format!(
+        "has a torque of {:.1}, and below {usual:.1} in 99 % of the samples",
+        run.torque(sample)[joint]
+    );
+    Some(WrongSamples { sample: Some(sample), joint: Some(joint), text, is_certain: true })
+}
+
+/// Returns whether samples in motion repeat the one before, as if a sensor were slower than the
+/// log.
+fn repeated(run: &Run) -> Option<WrongSamples> {
+    let is_moving = |k: &usize| {
+        let [before, after] = [run.qd(k - 1), run.qd(*k)];
+        before.iter().chain(after).any(|qd| *qd != 0.0)
+    };
+    let moving: Vec<usize> = (1..run.len()).filter(is_moving).collect();
+    let count = |is_same: &dyn Fn(usize) -> bool| {
+        moving.iter().filter(|k| is_same(**k)).count() as f64 / moving.len().max(1) as f64
+    };
+    let states = count(&|k| run.state(k) == run.state(k - 1));
+    // The torques of one joint may be equal by their resolution.
+    let torques = count(&|k| run.joints > 2 && run.torque(k) == run.torque(k - 1));
+    let (part, what) =
+        if states > REPEATED { (states, "positions and velocities") } else { (torques, "torques") };
+    let text = format!(
+        "repeat the {what} of the sample before in {:.0} % of the motion: the sensor is slower \
+         than the log; record at {:.0} Hz",
+        100.0 * part,
+        (1.0 - part) / usual_step(run)
+    );
+    (part > REPEATED).then_some(WrongSamples { sample: None, joint: None, text, is_certain: false })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two joints that move at 100 Hz, whose samples `change` makes.
+    fn found(change: impl Fn(usize, &mut [f64])) -> Vec<WrongSamples> {
+        let rows = (0..500).map(|k| {
+            let t = 0.01 * f64::from(k);
+            let mut row = [
+                1.0 + t.sin(),
+                (2.0 * t).sin(),
+                t.cos(),
+                2.0 * (2.0 * t).cos(),
+                30.0 * t.cos(),
+                5.0,
+            ];
+            change(k as usize, &mut row);
+            row
+        });
+        let rows: Vec<[f64; 6]> = rows.collect();
+        let times = (0..500).map(|k| 0.01 * f64::from(k)).collect();
+        let states = rows.iter().flat_map(|row| row[..4].to_vec()).collect();
+        let torques = rows.iter().flat_map(|row| row[4..].to_vec()).collect();
+        wrong_samples(&Run::new(2, times, states, torques).unwrap())
+    }
+
+    #[test]
+    fn samples_that_are_right_are_not_named() {
+        assert_eq!(found(|_, _| ()), []);
+        // Velocities in degrees per second explain no motion.
+        assert_eq!(found(|_, row| row[2..4].iter_mut().for_each(|qd| *qd *= 57.3)), []);
+        let round =
+            |row: &mut [f64]| row.iter_mut().for_each(|x| *x = (*x * 200.0).round() / 200.0);
+        assert_eq!(found(|_, row| round(row)), []);
+    }
+
+    #[test]
+    fn wrong_samples_are_named_with_their_place() {
+        let zeros = &found(|k, row| {
+            if k == 250 {
+                row.fill(0.0)
+            }
+        })[0];
+        assert_eq!((zeros.sample, &*zeros.text), (Some(250), "is a row of zeros"));
+        let zeros = &found(|k, row| {
+            if (100..110).contains(&k) {
+                row.fill(0.0)
+            }
+        })[0];
+        assert_eq!(&*zeros.text, "is the first of 10 rows of zeros");
+        let jump = &found(|k, row| {
+            if k == 300 {
+                row[1] += 0.5
+            }
+        })[0];
+        assert_eq!((jump.sample, jump.joint), (Some(300), Some(1)));
+        assert!(jump.text.contains("in one sample and back"), "{jump:?}");
+        let step = &found(|k, row| {
+            if k >= 300 {
+                row[0] -= 0.3
+            }
+        })[0];
+        assert!(step.text.starts_with("jumps by -0.3") && step.text.contains("in one sample,"));
+        let torque = &found(|k, row| {
+            if k == 7 {
+                row[4] = -4000.0
+            }
+        })[0];
+        assert!(torque.sample == Some(7) && torque.text.contains("-4000.0"), "{torque:?}");
+    }
+
+    #[test]
+    fn samples_that_repeat_are_named_with_the_rate_of_the_sensor() {
+        for held in [2, 5] {
+            let found = found(|k, row| {
+                let t = 0.01 * (k - k % held) as f64;
+                row[..4].copy_from_slice(&[
+                    1.0 + t.sin(),
+                    (2.0 * t).sin(),
+                    t.cos(),
+                    2.0 * (2.0 * t).cos(),
+                ]);
+            });
+            assert_eq!(found.len(), 1, "{found:?}");
+            assert!(found[0].text.contains(&format!("record at {} Hz", 100 / held)), "{found:?}");
+        }
+    }
+}
