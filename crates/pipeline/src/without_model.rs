@@ -93,45 +93,35 @@ impl WithoutModel {
     pub(crate) fn add_to(&self, table: &mut Table) {
         table.header.push("narrower".into());
         for (row, narrower) in table.rows.iter_mut().zip(&self.narrower) {
-            row.push(if narrower.is_finite() {
-                significant(*narrower, 2).to_string()
-            } else {
-                "-".into()
-            });
+            let times = || format!("x {}", significant(*narrower, 2));
+            row.push(if narrower.is_finite() { times() } else { "-".into() });
         }
     }
 
     /// Returns why a model is not worth having, in a few words.
     pub(crate) fn why_better(&self) -> String {
-        match self.faster {
-            Some([own, without]) if self.gain() > 1.0 => format!(
+        match (self.widest_of_model, self.faster) {
+            (None, _) => "no factor of its sets encloses a motion that was left out".into(),
+            (_, Some([own, without])) if self.gain() > 1.0 => format!(
                 "of faster motions {} of the rows leave its sets, and without a model {},",
                 percent(Some(own)),
                 percent(Some(without))
             ),
-            _ => format!(
-                "without a model the sets are no wider ({} times as wide)",
-                significant(self.gain(), 2)
-            ),
+            _ => {
+                format!("without a model the sets are no wider (x {})", significant(self.gain(), 2))
+            }
         }
     }
 
     /// Returns how the sets without a model compare, in a few words.
     pub(crate) fn words(&self) -> String {
-        let start = match self.equations {
-            Equations::Held => "acceleration of the start held",
-            Equations::Decaying => "acceleration of the start decaying",
-            _ => "velocity of the start held",
-        };
         let [own, without] = [self.widest_of_model, self.widest].map(percent);
         let faster = self.faster.map_or_else(String::new, |[own, without]| {
             let [own, without] = [own, without].map(|part| percent(Some(part)));
-            format!(", {without} of faster motions outside (with it: {own})")
+            format!("; of faster motions {without} outside (with it {own})")
         });
-        format!(
-            "sets {} times as wide ({start}), the widest {without} (with it: {own}){faster}",
-            significant(self.gain(), 2)
-        )
+        let gain = significant(self.gain(), 2);
+        format!("sets x {gain} as wide, the widest {without} (with it {own}){faster}")
     }
 }
 
@@ -221,11 +211,11 @@ mod tests {
         assert!(better.is_model_better());
         assert_eq!(
             better.words(),
-            "sets 2 times as wide (acceleration of the start held), the widest 90 % (with it: 30 \
-             %), 20 % of faster motions outside (with it: 1 %)"
+            "sets x 2 as wide, the widest 90 % (with it 30 %); of faster motions 20 % outside (with \
+             it 1 %)"
         );
         let wider = compared(vec![0.5, 1.9], None);
-        assert!(!wider.is_model_better() && wider.why_better().contains("no wider (0.97 times"));
+        assert!(!wider.is_model_better() && wider.why_better().contains("no wider (x 0.97)"));
         let slower = compared(vec![2.0, 2.0], Some([0.4, 0.1]));
         assert!(!slower.is_model_better());
         assert!(slower.why_better().starts_with("of faster motions 40 % of the rows leave"));

@@ -124,6 +124,7 @@ impl Robot {
             (joint.armature, joint.rotor_inertia) = (None, None);
         }
         robot.joints.iter_mut().for_each(|joint| joint.armature = 0.0);
+        robot.links.iter_mut().for_each(|link| link.armature = 0.0);
         robot
     }
 

@@ -12,6 +12,7 @@ mod outer_gauge;
 pub(crate) mod point_gauge;
 pub(crate) mod trends;
 pub(crate) mod trust;
+pub(crate) mod trust_kind;
 pub(crate) mod without_motion;
 
 pub use allowance::AllowanceNeeded;
@@ -19,5 +20,6 @@ pub use any_run::AnyRun;
 pub use calibration::{Calibration, Gauge};
 pub use growth::Growth;
 pub use trends::Trend;
-pub use trust::{CONFIDENCE, Trust, TrustKind};
+pub use trust::{CONFIDENCE, Trust};
+pub use trust_kind::TrustKind;
 pub use without_motion::LeftOut;

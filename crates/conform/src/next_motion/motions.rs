@@ -2,6 +2,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use crate::data::recordings::Recordings;
 use crate::data::suite::Suite;
+use crate::next_motion::trust_kind::TrustKind;
 
 /// Durations are the same up to this part.
 const SAME_END: f64 = 1e-6;
@@ -93,6 +94,15 @@ impl<'a> Motions<'a> {
         let longest = (0..all.len()).filter(|suite| all[*suite] >= (1.0 - SAME_END) * longest);
         let motions: BTreeSet<&str> = longest.map(|suite| self.of_suite(suite)).collect();
         motions.len() == 1 && self.count() > 1
+    }
+
+    /// Returns the kind of a statement that counts motions: a guarantee, unless suites are counted
+    /// as motions because the source names none.
+    pub(crate) fn kind(&self) -> TrustKind {
+        match self.are_named || self.count() < 2 {
+            true => TrustKind::Guarantee,
+            false => TrustKind::Indication,
+        }
     }
 
     /// Returns what weakens a statement that counts motions, to follow its basis.

@@ -16,23 +16,12 @@ use crate::data::settings::InitialLimit;
 use crate::next_motion::bounds::{clopper_pearson, scenario_bound};
 use crate::next_motion::calibration::{Calibration, Gauge};
 use crate::next_motion::motions::Motions;
+use crate::next_motion::trust_kind::TrustKind;
 use crate::tube::rows::NEGLIGIBLE_RADIUS;
 use crate::tube::witness::Witness;
 
 /// Confidence of the bounds that are reported.
 pub const CONFIDENCE: f64 = 0.95;
-
-/// Kinds of statements about motions that were not recorded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum TrustKind {
-    /// It holds for all distributions of motions that satisfy the assumption of its basis.
-    Guarantee,
-    /// The formula of a guarantee where a condition of its theorem is not met. It bounds nothing.
-    Indication,
-    /// It describes the recordings at hand. It bounds nothing.
-    Description,
-}
 
 /// A statement about the next motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -179,7 +168,7 @@ impl Trust {
                 },
                 motions.caveat()
             ),
-            kind: Some(TrustKind::Guarantee),
+            kind: Some(motions.kind()),
         }
         .of_candidates(calibration.candidates)
     }
@@ -244,7 +233,7 @@ impl Trust {
             average_probability: None,
             confidence: CONFIDENCE,
             basis: format!("{name} for independent motions{}", motions.caveat()),
-            kind: Some(TrustKind::Guarantee),
+            kind: Some(motions.kind()),
         }
     }
 

@@ -4,7 +4,8 @@ use reachtube_scalar::number::{at_least, counted, plural};
 
 use crate::model::file::Model;
 use crate::next_motion::calibration::{Calibration, Gauge};
-use crate::next_motion::trust::{Trust, TrustKind};
+use crate::next_motion::trust::Trust;
+use crate::next_motion::trust_kind::TrustKind;
 use crate::result::code::Code;
 use reachtube_finding::{Finding, Remedy, Severity};
 
