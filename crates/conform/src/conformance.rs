@@ -4,7 +4,6 @@ use std::path::Path;
 
 use reachtube_scalar::rounding::add_down;
 
-use crate::claim::claim::Claim;
 use crate::claim::notion::claim;
 use crate::claim::verdict::Verdict;
 use crate::data::problem::Problem;
@@ -118,7 +117,7 @@ pub fn conform(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem)?, None, (progress, resume))
+    conform_fitted(problem, None, progress, resume)
 }
 
 /// Does what [`conform`] does for the problem of a fit, which left motions out of both the nominal
@@ -133,17 +132,9 @@ pub(crate) fn conform_fitted(
     progress: &dyn Progress,
     resume: Option<&Path>,
 ) -> Result<Conformance> {
-    conform_claim(problem, &*claim(problem)?, left_out, (progress, resume))
-}
-
-fn conform_claim(
-    problem: &Problem,
-    claim: &dyn Claim,
-    left_out: Option<LeftOutMotions>,
-    how: (&dyn Progress, Option<&Path>),
-) -> Result<Conformance> {
+    let how = (progress, resume);
     let (found, calibration) = if problem.settings().calibrate.is_empty() {
-        (smallest_sets(problem, claim, left_out, how)?, None)
+        (smallest_sets(problem, &*claim(problem)?, left_out, how)?, None)
     } else {
         let (found, calibration) = calibrate(problem, left_out, how)?;
         (found, Some(calibration))
@@ -151,15 +142,13 @@ fn conform_claim(
     judged(problem, found, calibration, Vec::new())?.with_stiction(problem)
 }
 
-/// Proves sets that were found, and states the result.
 fn judged(
     problem: &Problem,
     found: Found,
     calibration: Option<Calibration>,
     allowance: Vec<f64>,
 ) -> Result<Conformance> {
-    let Found { tube, cost, cost_of_samples, lower_bound, optimality_gap, .. } = found;
-    let Found { paper_cost, hull_volume, search, left_out, deciding, .. } = found;
+    let Found { tube, costs, lower_bound, optimality_gap, search, left_out, deciding, .. } = found;
     let LeftOutMotions { each: left_out, missing } = left_out;
     let mut tight = found.touching;
     let mut radii = vec![0.0f64; problem.states()];
@@ -184,12 +173,12 @@ fn judged(
         warnings,
         usefulness: Usefulness::new(problem, &tube, &fit),
         nominal_explains: fit.explained,
-        cost,
-        cost_of_samples,
+        cost: costs.cost,
+        cost_of_samples: costs.of_samples,
         lower_bound,
         optimality_gap,
-        paper_cost,
-        hull_volume,
+        paper_cost: costs.paper,
+        hull_volume: costs.volume,
         trust,
         verdict,
         trends: trends(problem),
@@ -270,7 +259,6 @@ impl Conformance {
     }
 }
 
-/// Returns what may be expected of motions that were not recorded.
 fn trust(
     problem: &Problem,
     calibration: Option<&Calibration>,

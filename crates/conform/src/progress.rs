@@ -26,7 +26,6 @@ pub struct Silent;
 impl Progress for Silent {}
 
 impl dyn Progress + '_ {
-    /// Ends a job that is cancelled.
     pub(crate) fn go_on(&self) -> Result<()> {
         if self.is_cancelled() { Err(Error::Cancelled) } else { Ok(()) }
     }

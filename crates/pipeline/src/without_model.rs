@@ -211,8 +211,8 @@ mod tests {
         assert!(better.is_model_better());
         assert_eq!(
             better.words(),
-            "sets x 2 as wide, the widest 90 % (with it 30 %); of faster motions 20 % outside (with \
-             it 1 %)"
+            "sets x 2 as wide, the widest 90 % (with it 30 %); of faster motions 20 % outside \
+             (with it 1 %)"
         );
         let wider = compared(vec![0.5, 1.9], None);
         assert!(!wider.is_model_better() && wider.why_better().contains("no wider (x 0.97)"));

@@ -50,8 +50,8 @@ impl Run {
         if samples > 0 && self.joints == joints && lengths == [2 * joints * samples; 2] {
             return Ok(());
         }
-        let of = if samples == 0 { "no samples of " } else { "" };
-        let problem = format!("the run has {of}{} joints, but the robot has {joints}", self.joints);
+        let own = format!("{samples} samples of {} joints", self.joints);
+        let problem = format!("the run has {own}, but the robot has {joints}");
         let remedy = "give the robot of the recordings, and one sample at least";
         Err(Defect::new(name, None, problem, remedy).of_kind(DefectKind::Joints))
     }

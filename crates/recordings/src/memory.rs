@@ -133,7 +133,7 @@ mod tests {
     fn another_number_of_joints_is_a_defect() {
         let options = ReadOptions::of(6);
         let problem = problem(&runs(&[0.0]), &options);
-        assert!(problem.contains("run: the run has 1 joints, but the robot has 6"), "{problem}");
+        assert!(problem.contains("1 samples of 1 joints, but the robot has 6"), "{problem}");
     }
 
     #[test]

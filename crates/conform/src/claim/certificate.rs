@@ -104,11 +104,10 @@ fn lines(
     sets: &UncertaintySets,
     at: &SamplePoints,
 ) -> Vec<String> {
-    let (settings, slice) = (problem.settings(), plant.slice(sets, at.place()));
+    let slice = plant.slice(sets, at.place());
     let points = CentredPoints::new(at, &slice);
     let mut lines = Vec::new();
-    let rows = settings.states.rows(problem.shape().states);
-    for states in &settings.notion.projections(rows, problem.parts()) {
+    for states in &problem.projections() {
         let (proved, _) = SampleSet::new(&slice, states).prove(&points, |point, factors| {
             let Factors { held, limit, set, work } = factors;
             let (suite, run) = at.owners[point];

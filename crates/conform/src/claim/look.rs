@@ -24,7 +24,6 @@ pub(crate) enum Look {
 }
 
 impl Look {
-    /// Returns the look at every point that proves.
     pub(crate) fn proof() -> Self {
         Self::Proof { at: None, asked: Vec::new() }
     }

@@ -36,7 +36,6 @@ pub(crate) fn claim(problem: &Problem) -> Result<Box<dyn Claim + '_>> {
     })
 }
 
-/// Returns the model of a problem over its recordings.
 pub(crate) fn plant(problem: &Problem) -> Result<Box<dyn Plant + '_>> {
     Ok(match problem.dynamics().linear_system() {
         Some(_) => Box::new(Linear::new(problem)?),

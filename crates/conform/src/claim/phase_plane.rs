@@ -46,7 +46,7 @@ impl PhasePlane {
             return Ok(Vec::new());
         }
         let (plant, points) = (Linear::with_slices(problem)?, points(problem)?);
-        let planes = Notion::PhasePlane.projections(problem.shape().states, problem.parts());
+        let planes = Notion::PhasePlane.projections(problem.states(), problem.parts());
         let plane = |(part, states): (usize, &Vec<usize>)| {
             let ratio = |at: &SamplePoints| furthest(&plant.slice(sets, at.place()), at, states);
             let ratios: Vec<f64> = points.par_iter().map(ratio).collect();

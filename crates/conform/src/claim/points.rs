@@ -39,11 +39,14 @@ pub(crate) struct Points<'a> {
 
 impl<'a> Points<'a> {
     pub(crate) fn new(problem: &'a Problem) -> Result<Self> {
-        let (settings, parts) = (problem.settings(), problem.parts());
-        let rows = settings.states.rows(problem.shape().states);
-        let projections = settings.notion.projections(rows, parts);
-        let (samples, lists) = (points(problem)?, Mutex::default());
-        Ok(Self { problem, samples, projections, tolerance: tolerance(settings), lists })
+        let (projections, tolerance) = (problem.projections(), tolerance(problem.settings()));
+        Ok(Self {
+            problem,
+            samples: points(problem)?,
+            projections,
+            tolerance,
+            lists: Mutex::default(),
+        })
     }
 
     fn file(&self, run: u32) -> String {

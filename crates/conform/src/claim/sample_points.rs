@@ -13,9 +13,7 @@ use crate::tube::judged::At;
 /// The points of runs at one sample of one strand: a grid of a linear model, a case of any other.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SamplePoints {
-    /// The strand.
     pub strand: usize,
-    /// The sample.
     pub sample: usize,
     /// The deviations d = x_m(t_k) - x̂(t_k), rounded, or the states x_m(t_k), points x 2n.
     pub values: Vec<f64>,
@@ -69,7 +67,6 @@ pub(crate) fn points(problem: &Problem) -> Result<Vec<SamplePoints>> {
     }
 }
 
-/// Collects the recorded states of each case.
 fn states(problem: &Problem) -> Result<Vec<SamplePoints>> {
     let cases = problem.cases()?;
     let lengths = cases.iter().map(|case| case.grid.len());

@@ -42,7 +42,6 @@ pub(crate) struct SampleSet<'a> {
 pub(crate) struct Factors<'a> {
     /// Number of steps over which the disturbances are held.
     pub held: usize,
-    /// What the factors were kept to.
     pub limit: f64,
     pub set: &'a Membership,
     pub work: &'a MembershipWorkspace,

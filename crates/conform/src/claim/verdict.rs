@@ -66,7 +66,6 @@ pub struct SuiteVerdict {
 }
 
 impl SuiteVerdict {
-    /// Returns whether a row or a point of the suite was not proved.
     pub(crate) fn fails(&self) -> bool {
         self.violations.count > 0 || self.points_unproved.is_some_and(|count| count > 0)
     }

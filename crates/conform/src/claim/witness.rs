@@ -62,7 +62,6 @@ pub struct PointWitness {
 /// What a direction shows of a point outside a set.
 pub(crate) struct SeparatedPoint<'a> {
     pub suite: usize,
-    /// The recording.
     pub file: &'a str,
     pub sample: usize,
     /// Time since the first sample, s.
@@ -105,7 +104,6 @@ impl PointVerdict {
 }
 
 impl PointWitness {
-    /// Names a point outside in the words of the recordings.
     pub(crate) fn new(problem: &Problem, point: &SeparatedPoint) -> Self {
         let SeparatedPoint { hull, deviation, direction, .. } = point;
         let parts: Vec<f64> =
@@ -134,7 +132,6 @@ impl PointWitness {
         self.direction.iter().position(|l| l.abs() == 1.0).unwrap_or(0)
     }
 
-    /// Returns the point as a value of the state that counts most in the combination.
     pub(crate) fn into_witness(self) -> Witness {
         let (index, state) = (self.leading_index(), self.leading_state());
         let Self { suite, run, sample, time, direction, value, reach, .. } = self;

@@ -184,7 +184,6 @@ impl Envelope {
         }
     }
 
-    /// Returns the upper and the lower bounds with their runs, to be changed.
     fn owned(&mut self) -> (Owned<'_>, Owned<'_>) {
         let Self { upper, lower, upper_run, lower_run, .. } = self;
         let (of_upper, of_lower) = (Arc::make_mut(upper_run), Arc::make_mut(lower_run));

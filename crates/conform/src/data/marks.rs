@@ -24,7 +24,6 @@ impl Marks {
         Self { stride, states, dimension }
     }
 
-    /// Returns whether the states were let go.
     pub(crate) fn is_empty(&self) -> bool {
         self.states.is_empty()
     }

@@ -23,7 +23,6 @@ impl Origin {
         }
     }
 
-    /// Returns whether a recording is marked as simulated. A fold has no such marks.
     pub(crate) fn is_simulated(&self) -> bool {
         match self {
             Self::Source(source) => source.runs().iter().any(|run| run.simulated),

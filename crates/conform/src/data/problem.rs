@@ -60,7 +60,6 @@ pub(crate) struct Read {
     pub recordings: Recordings,
     pub kept: Arc<HashMap<usize, Run>>,
     pub sensor_noise: SensorNoise,
-    /// The key of the inputs that the suites have.
     pub input_key: String,
 }
 
@@ -94,7 +93,6 @@ impl Problem {
         Ok(Self::of_recordings(setup, Origin::Source(source.into()), recordings, kept.into_runs()))
     }
 
-    /// Makes the problem of recordings that were read, and notes for the user.
     pub(crate) fn of_recordings(
         setup: Setup,
         origin: Origin,
@@ -185,6 +183,12 @@ impl Problem {
     /// Returns the parts of the system, whose states are looked at together.
     pub(crate) fn parts(&self) -> &[Part] {
         &self.signals().parts
+    }
+
+    /// Returns the states of each projection in which recorded points must lie in the set.
+    pub(crate) fn projections(&self) -> Vec<Vec<usize>> {
+        let rows = self.settings().states.rows(self.states());
+        self.settings().notion.projections(rows, self.parts())
     }
 
     /// Returns the states of each kind, such as all positions: the first states of all parts, then
@@ -308,7 +312,6 @@ impl Problem {
     }
 }
 
-/// The noise of the sensors, as the settings give it or these recordings show it.
 pub(super) fn sensor_noise(setup: &Setup, recordings: &Recordings) -> SensorNoise {
     match &setup.settings.sensor_noise {
         Some(radius) => SensorNoise::given(radius.clone()),

@@ -121,6 +121,16 @@ pub enum Noise {
     Fixed(Vec<f64>),
 }
 
+impl Noise {
+    /// Returns the known radius of state `i`; 0 if none is known.
+    pub(crate) fn known(&self, i: usize) -> f64 {
+        match self {
+            Self::Fixed(radii) => radii[i],
+            Self::None | Self::Fitted => 0.0,
+        }
+    }
+}
+
 /// How the states are weighed against each other in the cost (docs/method.md, correction F: rad and
 /// rad/s are otherwise added as they are).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]

@@ -387,7 +387,6 @@ impl Setup {
         self
     }
 
-    /// Returns whether inputs or compensations depend on the condition of the run.
     pub(crate) fn differs_by_run(&self) -> bool {
         self.drive.input_differs_by_run() || self.drive.compensation_differs_by_run()
     }

@@ -53,7 +53,6 @@ impl Signals {
         &self.states[state.index(self.inputs.len())].unit
     }
 
-    /// Names parts by their numbers, from 1, after the word for them.
     pub(crate) fn place(&self, parts: impl Iterator<Item = usize>) -> String {
         let parts: BTreeSet<usize> = parts.collect();
         let numbers: Vec<String> = parts.iter().map(ToString::to_string).collect();
@@ -67,7 +66,6 @@ impl Signals {
         Units::new(self.parts.iter().map(|part| of(part).unwrap_or("")))
     }
 
-    /// Returns the units of the inputs.
     pub(crate) fn units_of_inputs(&self) -> Units {
         Units::new(self.inputs.iter().map(|input| input.unit.as_str()))
     }

@@ -41,7 +41,6 @@ impl Suite {
         self.totals.count
     }
 
-    /// Returns whether the robot rests in the logs that all runs were cut from.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.runs.iter().all(|run| run.at_rest)
     }
@@ -229,7 +228,6 @@ impl Part {
 struct SharedGrids(Mutex<Vec<Arc<TimeGrid>>>);
 
 impl SharedGrids {
-    /// Returns a known grid that is `grid` or begins with it, or `grid`, which is known from now.
     fn of(&self, grid: &Arc<TimeGrid>) -> Arc<TimeGrid> {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(longer) = known.iter().find(|longer| grid.is_prefix_of(longer)) {

@@ -91,7 +91,6 @@ impl Totals {
         self.starts.iter().map(ExactSum::mean).collect()
     }
 
-    /// Returns how many runs have recorded temperatures.
     pub(crate) fn with_temperature(&self) -> usize {
         self.temperatures.first().map_or(0, |sum| sum.count() as usize)
     }

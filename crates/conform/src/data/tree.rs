@@ -24,9 +24,7 @@ pub(crate) struct Tree {
 /// Content of the leaf of a recording besides its place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Leaf<'a> {
-    /// The file.
     pub file: &'a str,
-    /// The suite.
     pub suite: &'a str,
     /// SHA-256 of the recording, in hexadecimal; empty if it has defects.
     pub sha256: &'a str,

@@ -25,18 +25,14 @@ pub(crate) struct Data {
     /// The distinct sample grids, the longest first; a grid that is the beginning of another is not
     /// distinct.
     pub grids: Vec<Arc<TimeGrid>>,
-    /// The cases.
     pub tracks: Vec<Track>,
-    /// The names of the motions.
     pub motions: Vec<String>,
 }
 
 /// A case with its recorded inputs.
 pub(crate) struct Track {
     pub case: Case,
-    /// Index of the grid.
     pub grid: usize,
-    /// Index of the motion.
     pub motion: usize,
 }
 

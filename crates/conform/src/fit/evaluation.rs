@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use reachtube_reach::{Disturbance, TimeGrid};
 
 use crate::data::envelope::Envelope;
-use crate::data::settings::{Noise, Settings};
+use crate::data::settings::Settings;
 use crate::data::setup::{Near, Parameters, Setup};
 use crate::data::shape::Shape;
 use crate::data::side::Side;
@@ -61,7 +61,6 @@ pub(crate) struct Smallest {
     pub cost: f64,
     /// The cost, an integral over time.
     pub cost_by_time: f64,
-    /// The rows that decide the sets.
     pub deciding: Vec<StepRow>,
 }
 
@@ -185,10 +184,7 @@ impl FitTask<'_> {
         let track = &self.data.tracks[t];
         let (sample, states) = (k * self.stride, self.states());
         let nominal = model.motions[t][k * states + i];
-        let known = match &self.settings.noise {
-            Noise::Fixed(radii) => radii[i],
-            Noise::None | Noise::Fitted => 0.0,
-        };
+        let known = self.settings.noise.known(i);
         match side {
             Side::Upper => track.case.measured.upper(sample, i) - nominal - known,
             Side::Lower => nominal - track.case.measured.lower(sample, i) - known,

@@ -222,7 +222,6 @@ fn one_motion(others_are_held_out: bool) -> String {
 }
 
 impl Problem {
-    /// Returns what limits the sets of all motions but one, for each motion.
     fn limits_without_each(&self, data: &Data) -> Vec<Limits> {
         let of = |motion: usize| {
             let is_own = |suite| {
@@ -250,7 +249,7 @@ fn calibrated_cost(problem: &Problem) -> Option<f64> {
         let known = Some(LeftOutMotions::default());
         calibrate(problem, known, (&Silent, None))
     });
-    found?.ok().map(|(found, _)| found.cost)
+    found?.ok().map(|(found, _)| found.costs.cost)
 }
 
 fn not_taken(fit: &FitTask, choice: PullChoice, steering: &Problem) -> Result<FitRecord> {

@@ -13,9 +13,7 @@ const LEAST_TRUST: f64 = 2e-3;
 /// The result of a search.
 #[derive(Debug, Clone)]
 pub(crate) struct FoundNumbers {
-    /// The numbers of the parameters.
     pub numbers: Vec<f64>,
-    /// Number of steps that were accepted.
     pub steps: usize,
     /// The cost with the pull.
     pub value: f64,
@@ -38,7 +36,6 @@ pub(crate) struct Wanted {
 pub(crate) struct SearchEffort {
     /// It ends when a step promises, or gains, less than this part of the cost.
     pub settled: f64,
-    /// Steps at most.
     pub steps: usize,
     /// Whether the robot must be physical after each step, at every position that is searched.
     pub is_physical: bool,
@@ -64,7 +61,6 @@ struct Point {
 struct Search<'a> {
     fit: &'a FitTask<'a>,
     wanted: &'a Wanted,
-    /// The recordings.
     tracks: Vec<usize>,
 }
 

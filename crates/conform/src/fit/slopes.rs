@@ -22,7 +22,6 @@ pub(crate) struct Slope {
 /// The derivatives at some numbers, for the tracks that were added.
 pub(crate) struct Slopes<'a> {
     fit: &'a FitTask<'a>,
-    /// The model there, and its nominal motions.
     here: (NominalModel, &'a FitModel),
     /// One for each parameter; `None` for one that is held.
     moved: Vec<Option<Moved>>,
@@ -55,7 +54,6 @@ impl<'a> Slopes<'a> {
         Ok(Self { fit, here: (fit.nominal(numbers)?, model), moved, list })
     }
 
-    /// Adds the derivatives of the nominal motions of `tracks`.
     pub(crate) fn add(&mut self, tracks: &[usize]) -> Result<()> {
         let Self { fit, here: (here, model), moved, list } = self;
         let has_near = fit.parameters.has_near();

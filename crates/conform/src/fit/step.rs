@@ -55,11 +55,9 @@ pub(crate) struct StepProgram<'a> {
     pub fit: &'a FitTask<'a>,
     pub model: &'a FitModel,
     pub slopes: &'a [Slope],
-    /// The program at the present parameters.
     pub program: &'a Program<'a>,
     /// The tracks whose rows count.
     pub tracks: &'a [usize],
-    /// The present numbers.
     pub numbers: &'a [f64],
     /// The smallest sets at the present parameters.
     pub smallest: &'a Smallest,
@@ -304,7 +302,6 @@ impl StepProgram<'_> {
         self.fit.deviation(self.model, row) - reached
     }
 
-    /// The worst violated row of each grid, window, state and side that is not among `known`.
     fn violated(&self, reach: &Reach, known: &[StepRow]) -> Vec<StepRow> {
         let known: HashSet<StepRow> = known.iter().copied().collect();
         let states = self.fit.settings.states.rows(self.fit.states());

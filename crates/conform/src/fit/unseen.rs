@@ -13,7 +13,6 @@ use crate::program::program::Program;
 pub(crate) struct Unseen<'a> {
     /// The task at every sample, with what limits the sets of the other motions.
     pub whole: FitTask<'a>,
-    /// The motion.
     pub motion: usize,
 }
 
@@ -36,8 +35,7 @@ impl Unseen<'_> {
         let cost = whole.smallest_from(&model, &all, &mut rows)?.cost_by_time;
         let program = whole.program(&model, &own);
         let input_only = whole.settings.nominal == NominalStart::Own;
-        let [_, input, both] = program.growth_factors(&smallest.sets);
-        let growth = if input_only { input } else { both };
+        let growth = program.growth(&smallest.sets, input_only);
         let [initial_growth, input_growth] =
             Program::growth_in_turn(from_ref(&program), &smallest.sets, input_only);
         let of_track = |t: &usize| {

@@ -104,7 +104,6 @@ impl DataRecord {
 }
 
 impl Problem {
-    /// Returns the files of the source of the recordings, in any suite.
     fn files(&self) -> BTreeSet<&str> {
         self.read.origin.entries().map(|entry| entry.file.as_str()).collect()
     }

@@ -84,7 +84,6 @@ fn follow(monitor: &mut Monitor, runs: &dyn RunSource, index: usize) -> Result<(
     Ok(())
 }
 
-/// Returns the speed from which on each part is judged.
 fn gates(task: &Task) -> Vec<f64> {
     let Task::Speeds { squares, count } = task else { return Vec::new() };
     let gate = |square: &f64| {

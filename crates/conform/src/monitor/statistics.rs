@@ -105,7 +105,6 @@ impl Statistics {
         torque - a * sine - b * cosine
     }
 
-    /// Compares the torque of a part with its mean over the time before, and takes it in.
     fn compare(&mut self, j: usize, parts: Parts) {
         let moved = self.moved[j];
         let before = (BEFORE / self.step).round().max(1.0);
@@ -124,7 +123,6 @@ impl Statistics {
         self.values[j] = self.above[j].map(|above| -self.steady(j, above));
     }
 
-    /// Estimates drags and the payload together, by least squares with forgetting.
     fn estimate(&mut self) {
         let n = self.moved.len();
         let prior = PRIOR * self.shape.load;

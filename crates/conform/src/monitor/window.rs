@@ -39,7 +39,6 @@ pub(crate) struct Window {
     corrected: [Vec<f64>; 2],
     /// Whether that motion diverged.
     runs_away: bool,
-    /// The input of the step, n.
     input: Vec<f64>,
     /// The part of the set that was used at most after the first sample, and the signed part at
     /// the newest sample, 2n.

@@ -14,7 +14,6 @@ use crate::sets::UncertaintySets;
 pub(crate) type Missing = BTreeMap<(usize, usize, usize), (f64, Vec<f64>)>;
 
 impl Program<'_> {
-    /// Adds the rows of the program that lie beyond the reach of some sets.
     pub(crate) fn missing(&self, sets: &UncertaintySets, missing: &mut Missing) {
         let unknowns = self.unknowns(sets);
         for row in self.all_reached(&unknowns) {

@@ -38,7 +38,7 @@ impl AnyRun {
             problem.with_setup(Setup { condition: Some(condition.clone()), ..setup.clone() });
         let found = smallest_sets_alone(&blind, &*claim(&blind)?)?;
         let verdict = Verdict::new(&blind, &found.tube)?;
-        let (sets, cost) = (found.tube.sets, found.cost);
+        let (sets, cost) = (found.tube.sets, found.costs.cost);
         Ok(Some(Self { condition, sets, cost, verified: verdict.conformant }))
     }
 }

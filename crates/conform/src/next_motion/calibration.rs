@@ -21,7 +21,6 @@ use crate::search::prove::prove;
 use crate::search::smallest_sets::smallest_sets;
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::Effort;
-use crate::tube::plant::Costs;
 use crate::tube::tube::Tube;
 use reachtube_finding::Advice;
 
@@ -186,8 +185,7 @@ fn linear_gauge(
     input_only: bool,
 ) -> Result<Option<f64>> {
     let own = problem.deviations()?.iter().filter(|deviation| suites[deviation.suite]);
-    let [_, input, both] = program.with_deviations(own).growth_factors(sets);
-    Ok(if input_only { input } else { both })
+    Ok(program.with_deviations(own).growth(sets, input_only))
 }
 
 fn lost(motion: &str, factor: f64) -> String {
@@ -211,18 +209,7 @@ pub(crate) fn not_smallest(
         Some(scale) => prove((problem, plant), claim, sets, scale)?,
         None => claim.judge(plant, sets, &Look::proof())?,
     };
-    let Costs { cost, of_samples, paper, volume } = plant.costs(&tube)?;
-    Ok(Found {
-        tube,
-        cost,
-        cost_of_samples: of_samples,
-        lower_bound: None,
-        optimality_gap: None,
-        paper_cost: paper,
-        hull_volume: volume,
-        search: None,
-        left_out: LeftOutMotions::default(),
-        deciding: Deciding::Touching(if paper.is_some() { TIGHT } else { STEP - 1.0 }),
-        touching: Vec::new(),
-    })
+    let costs = plant.costs(&tube)?;
+    let touching = if costs.paper.is_some() { TIGHT } else { STEP - 1.0 };
+    Ok(Found::new(tube, costs, Deciding::Touching(touching)))
 }

@@ -18,14 +18,12 @@ const MOST_PROGRAMS: usize = 60;
 /// A motion beside the others.
 struct Without<'a> {
     problem: &'a Problem,
-    /// Which suites are the motion's.
     suites: Vec<bool>,
 }
 
 /// Motions that were left out, beside the sets of the others.
 #[derive(Debug, Default)]
 pub(crate) struct LeftOutMotions {
-    /// Each motion.
     pub each: Vec<LeftOut>,
     /// The rows of each motion that lie beyond the sets of the others. `None` for a single motion,
     /// for a program that could not be solved, and for a model that is not linear.
@@ -148,7 +146,7 @@ impl Without<'_> {
                 own.map(|case| case.measured.len()).sum()
             }
         };
-        Ok(samples * problem.settings().states.rows(problem.shape().states))
+        Ok(samples * problem.settings().states.rows(problem.states()))
     }
 
     fn own<'p>(&self, program: &Program<'p>) -> Result<Vec<Program<'p>>> {
@@ -170,10 +168,7 @@ impl Without<'_> {
         };
         let sets = others.repaired(&solution.sets);
         let input_only = self.problem.settings().nominal == NominalStart::Own;
-        let growth = |own: &Program| {
-            let [_, input, both] = own.growth_factors(&sets);
-            if input_only { input } else { both }
-        };
+        let growth = |own: &Program| own.growth(&sets, input_only);
         let growth = own.iter().map(growth).try_fold(1.0, |max: f64, g| g.map(|g| max.max(g)));
         let compared = match self.problem.dynamics().linear_system() {
             Some(_) => {

@@ -69,7 +69,6 @@ impl<'a> Motions<'a> {
         self.distinct().len()
     }
 
-    /// Returns the number of distinct motions of some suites, named one by one.
     pub(crate) fn count_of<'s>(&self, suites: impl Iterator<Item = &'s str>) -> usize {
         suites.filter_map(|suite| self.of_named_suite(suite)).collect::<BTreeSet<_>>().len()
     }

@@ -57,8 +57,7 @@ pub(crate) fn leave_points_out(problem: &Problem, motion: &str) -> Result<LeftOu
         .map(|own| problem.with_suites(|suite| (motions.of_suite(suite) == motion) == own));
     let sets = smallest_sets_alone(&others, &*claim(&others)?)?.tube.sets;
     let input_only = problem.settings().nominal == NominalStart::Own;
-    let [_, input, both] = Program::of_problem(&own)?.growth_factors(&sets);
-    let rows = if input_only { input } else { both };
+    let rows = Program::of_problem(&own)?.growth(&sets, input_only);
     let grown = |factor: f64| sets.grown(factor, input_only);
     let gauge = rows.map_or(Ok(None), |rows| point_gauge(&own, rows, &grown))?;
     let tube = claim(&own)?.judge(&*plant(&own)?, &sets, &Look::proof())?;

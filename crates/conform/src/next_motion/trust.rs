@@ -152,25 +152,19 @@ impl Trust {
             return Self::unknown(count, basis);
         }
         let largest = |gauge: &&Gauge| gauge.gauge >= calibration.factor;
-        Self {
-            motions: count,
-            deciding: calibration.gauges.iter().filter(largest).count(),
-            violation_probability: 1.0,
-            average_probability: Some(1.0),
-            confidence: CONFIDENCE,
-            basis: format!(
-                "split conformal calibration (Vovk 2012) for exchangeable motions, and for a \
-                 model that was fixed before a look at the held-out ones; at confidence for \
-                 independent motions{}{}",
-                match problem.dynamics().linear_system() {
-                    Some(_) => "",
-                    None => "; assumes that larger sets have larger computed outer sets",
-                },
-                motions.caveat()
-            ),
-            kind: Some(motions.kind()),
-        }
-        .of_candidates(calibration.candidates)
+        let basis = format!(
+            "split conformal calibration (Vovk 2012) for exchangeable motions, and for a model \
+             that was fixed before a look at the held-out ones; at confidence for independent \
+             motions{}{}",
+            match problem.dynamics().linear_system() {
+                Some(_) => "",
+                None => "; assumes that larger sets have larger computed outer sets",
+            },
+            motions.caveat()
+        );
+        let deciding = calibration.gauges.iter().filter(largest).count();
+        let kind = Some(motions.kind());
+        Self { deciding, kind, ..Self::unknown(count, basis) }.of_candidates(calibration.candidates)
     }
 
     /// Returns the calibration bound for the one of `candidates` models that was chosen after all
@@ -210,7 +204,6 @@ impl Trust {
         Self { basis, kind: Some(TrustKind::Indication), ..self }
     }
 
-    /// Returns the hold-out bound for a check on `recordings` that were not used in the fit.
     pub(crate) fn of_check(recordings: &Recordings, verdict: &Verdict) -> Self {
         let motions = Motions::independent(recordings);
         if motions.count() == 0 {
@@ -226,15 +219,10 @@ impl Trust {
     }
 
     fn new(motions: &Motions, deciding: usize, bound: f64, name: &str) -> Self {
-        Self {
-            motions: motions.count(),
-            deciding,
-            violation_probability: bound,
-            average_probability: None,
-            confidence: CONFIDENCE,
-            basis: format!("{name} for independent motions{}", motions.caveat()),
-            kind: Some(motions.kind()),
-        }
+        let basis = format!("{name} for independent motions{}", motions.caveat());
+        let kind = Some(motions.kind());
+        let unknown = Self::unknown(motions.count(), basis);
+        Self { deciding, violation_probability: bound, kind, ..unknown }
     }
 
     /// Returns that there is no bound, since motions that were cut from one log are not

@@ -76,7 +76,6 @@ impl Problem {
         }
     }
 
-    /// Returns whether the correction of the inputs is another for each run.
     pub(crate) fn differs_by_run(&self) -> bool {
         self.setup().drive.compensation_differs_by_run()
     }
@@ -121,7 +120,6 @@ impl Problem {
         })
     }
 
-    /// Takes the correction of the problem's model off the inputs of a case.
     fn corrected(&self, case: Case) -> Result<Case> {
         match self.corrected_until(case)? {
             (case, None) => Ok(case),

@@ -12,7 +12,6 @@ use crate::nominal::steps::LinearSteps;
 /// A nominal motion with the inputs that cause it, unrounded.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct NominalMotion {
-    /// Samples x N.
     pub states: Vec<f64>,
     /// The corrected input, samples x m. The last one acts on nothing and is the recorded one.
     pub inputs: Vec<f64>,

@@ -29,7 +29,6 @@ pub(crate) fn substeps(slopes: &mut dyn Slopes, case: &Case, start: &[f64]) -> u
     (norm * case.grid.longest_step() / STEP_NORM).ceil().clamp(1.0, 1e3) as usize
 }
 
-/// Returns the error that the model diverges along a case after `time` (s).
 pub(crate) fn runs_away(case: &Case, time: f64) -> Error {
     Error::RunsAway { case: case.name.clone(), time }
 }

@@ -20,7 +20,6 @@ pub(crate) struct LinearSteps {
     /// The distinct maps (x, u, 1) -> x, each 2n x (3n + 1): some rows after the other, and in them
     /// column by column.
     maps: Vec<Vec<Rows>>,
-    /// Which map each span has.
     of_span: Vec<usize>,
 }
 

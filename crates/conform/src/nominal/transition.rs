@@ -27,7 +27,6 @@ pub(crate) struct Transition {
 }
 
 impl Transition {
-    /// Allocates the solution of a system with `states` states and `inputs` inputs.
     pub(crate) fn new(states: usize, inputs: usize) -> Self {
         let square = || vec![0.0; states * states];
         let (gamma, driven) = (vec![0.0; states * inputs], vec![0.0; states * inputs]);

@@ -83,7 +83,6 @@ impl PartWidth {
 }
 
 impl Usefulness {
-    /// Compares the sets of `tube` with the recordings of `problem`.
     pub(crate) fn new(problem: &Problem, tube: &Tube, fit: &NominalFit) -> Self {
         let n = problem.inputs();
         let (horizon, radii) = tube.at_end();

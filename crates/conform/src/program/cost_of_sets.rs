@@ -4,7 +4,6 @@ use crate::program::program::Program;
 use crate::sets::UncertaintySets;
 
 impl Program<'_> {
-    /// Returns the cost of some sets, an integral over time.
     pub(crate) fn cost(&self, sets: &UncertaintySets) -> f64 {
         self.step * self.cost_in_steps(sets)
     }

@@ -17,7 +17,6 @@ use crate::tube::rows::NEGLIGIBLE_RADIUS;
 const SAME_STATE: f64 = 1e-9;
 
 impl Program<'_> {
-    /// Returns the program with other deviations on each of its blocks: the cost is the same.
     pub(crate) fn with_deviations<'d>(
         &self,
         deviations: impl IntoIterator<Item = &'d Deviation>,
@@ -100,6 +99,12 @@ impl Program<'_> {
         [0..states, states..all, 0..all].map(|part| self.factor(sets, part, |_| true))
     }
 
+    /// Returns the factor of the radii of X0 and U, or of U alone, with which every row holds.
+    pub(crate) fn growth(&self, sets: &UncertaintySets, input_only: bool) -> Option<f64> {
+        let first = if input_only { sets.initial_set.dimension() } else { 0 };
+        self.factor(sets, first..self.shape.radii(), |_| true)
+    }
+
     /// Returns the factors of X0 and of U in turn with which the rows of all `programs` hold, up to
     /// rounding: the factor of the radii of X0 for the rows of first samples, where U has no effect
     /// yet, and then the factor of the radii of U for all other rows; `None` if no factor suffices.
@@ -109,18 +114,18 @@ impl Program<'_> {
         sets: &UncertaintySets,
         input_only: bool,
     ) -> [Option<f64>; 2] {
-        let (states, all) = (sets.initial_set.dimension(), 3 * sets.input_set.dimension());
+        let states = sets.initial_set.dimension();
         let largest = |factor: &dyn Fn(&Self) -> Option<f64>| {
             let mut factors = programs.iter().map(factor);
             factors.try_fold(1.0, |max: f64, factor| factor.map(|factor| max.max(factor)))
         };
         if input_only {
-            return [Some(1.0), largest(&|own| own.factor(sets, states..all, |_| true))];
+            return [Some(1.0), largest(&|own| own.growth(sets, true))];
         }
         let initial = largest(&|own| own.factor(sets, 0..states, |sample| sample == 0));
         let input = initial.and_then(|factor| {
             let grown = sets.with_initial_scaled(factor);
-            largest(&|own| own.factor(&grown, states..all, |sample| sample > 0))
+            largest(&|own| own.factor(&grown, states..own.shape.radii(), |sample| sample > 0))
         });
         [initial, input]
     }

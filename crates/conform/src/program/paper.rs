@@ -11,7 +11,6 @@ pub(crate) struct PaperSums {
     pub of_samples: f64,
     /// Σ_k Σ_i (E_k (y1 - y2))_i, eq. (21).
     pub signed: f64,
-    /// Σ_k Δt Π_i 2 (R_k r)_i, eq. (2).
     pub volume: f64,
 }
 

@@ -184,7 +184,6 @@ impl<'a> Program<'a> {
         self.indices(1).map(|index| self.bound(index).abs()).fold(0.0, f64::max)
     }
 
-    /// The rows of every `stride`-th sample.
     pub(crate) fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
         let states = self.settings.states.rows(self.shape.states);
         self.blocks.iter().enumerate().flat_map(move |(b, block)| {
@@ -285,7 +284,6 @@ impl<'a> Program<'a> {
         (triplets, bounds)
     }
 
-    /// What known noise adds to every cost, in mean steps.
     fn fixed_cost(&self) -> f64 {
         match &self.settings.noise {
             Noise::Fixed(radii) => dot(radii, &self.noise_cost),
@@ -293,7 +291,6 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Returns the largest |d| among the rows.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use crate::data::settings::Noise;
 use crate::data::side::Side;
 use crate::program::dot::dot;
 use crate::program::program::{Program, ROUNDING, RowIndex, TIGHT, Unknowns};
@@ -28,10 +27,7 @@ impl Program<'_> {
     /// The right-hand side of a row: the deviation along its direction, less the known noise.
     pub(super) fn bound(&self, (b, k, i, side): RowIndex) -> f64 {
         let envelope = &self.blocks[b].envelope;
-        let known = match &self.settings.noise {
-            Noise::Fixed(radii) => radii[i],
-            Noise::None | Noise::Fitted => 0.0,
-        };
+        let known = self.settings.noise.known(i);
         match side {
             Side::Upper => envelope.upper(k, i) - known,
             Side::Lower => -envelope.lower(k, i) - known,
@@ -45,7 +41,6 @@ impl Program<'_> {
         self.beside(index, reach, unknowns)
     }
 
-    /// Compares all rows with the reach of sets.
     pub(crate) fn all_reached(&self, unknowns: &Unknowns) -> impl Iterator<Item = Reached> {
         let states = self.settings.states.rows(self.shape.states);
         let samples = self
@@ -114,7 +109,6 @@ impl Program<'_> {
         own.filter(|index| touches(&self.reached(*index, &unknowns), &unknowns)).collect()
     }
 
-    /// Keeps the rows that come within `part` of the largest |d| of the sets' reach.
     pub(crate) fn keep_close(&self, rows: &mut Vec<RowIndex>, sets: &UncertaintySets, part: f64) {
         let unknowns = self.unknowns(sets);
         rows.retain(|row| self.reached(*row, &unknowns).excess > -part * self.scale);

@@ -35,7 +35,6 @@ pub(crate) struct Optimum {
     pub found: Vec<f64>,
     /// Which rows decide it: rows whose multiplier exceeds their slack.
     pub active: Vec<bool>,
-    /// The dual objective.
     pub dual: f64,
 }
 

@@ -67,7 +67,6 @@ impl Check {
         summary
     }
 
-    /// Returns the verdict, and what else speaks against the sets.
     fn verdict_lines(&self, model: &Model) -> Vec<String> {
         let Verdict { conformant, runs, rows, violations, suites, lost, .. } = &self.verdict;
         let set = self.verdict.enclosure.set_name();

@@ -74,7 +74,6 @@ impl Model {
     }
 }
 
-/// Returns the verdict, what speaks against it, and the cost.
 fn verdict(model: &Model) -> Section {
     let proof = &model.proof;
     let mut findings = vec![findings::verdict_of_fit(model)];
@@ -89,7 +88,6 @@ fn verdict(model: &Model) -> Section {
     Section { findings, ..Section::default() }
 }
 
-/// Returns the sets, how much of the motion the nominal motions explain, and warnings.
 fn sets(model: &Model) -> Section {
     let mut section = Section {
         tables: vec![table_of_sets(model)],
@@ -182,7 +180,6 @@ fn touching(model: &Model) -> Section {
     Section { findings: vec![findings::touching(model)], tables, ..Section::default() }
 }
 
-/// Returns how the sets were calibrated, and the strongest statement about the next motion.
 fn new_motions(model: &Model) -> Section {
     let calibrated = model.calibration.as_ref().map(findings::calibrated);
     let bound = findings::next_motion_of_fit(model);

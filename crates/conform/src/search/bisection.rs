@@ -8,13 +8,12 @@ use crate::claim::claim::Claim;
 use crate::claim::look::Look;
 use crate::data::problem::Problem;
 use crate::error::Result;
-use crate::next_motion::left_out::LeftOutMotions;
 use crate::progress::Progress;
 use crate::search::found::{Deciding, Found, SearchSummary};
 use crate::search::prove::encloses;
 use crate::sets::UncertaintySets;
 use crate::tube::flowpipes::Effort;
-use crate::tube::plant::{Costs, Plant};
+use crate::tube::plant::Plant;
 use crate::tube::polynomial::Polynomial;
 use crate::tube::state::SearchState;
 
@@ -93,26 +92,13 @@ pub(super) fn bisect(
         ));
     }
     let tube = claim.judge(&plant, &state.sets, &Look::proof())?;
-    let Costs { cost, of_samples, volume, .. } = plant.costs(&tube)?;
+    let costs = plant.costs(&tube)?;
     let reachable_sets = state.reachable_sets + 1;
     let search = SearchSummary { rounds: 1, reachable_sets, ..SearchSummary::default() };
-    Ok(Found {
-        tube,
-        cost,
-        cost_of_samples: of_samples,
-        lower_bound: None,
-        optimality_gap: None,
-        paper_cost: None,
-        hull_volume: volume,
-        search: Some(search),
-        left_out: LeftOutMotions::default(),
-        deciding: Deciding::Touching(TOLERANCE),
-        touching: Vec::new(),
-    })
+    Ok(Found { search: Some(search), ..Found::new(tube, costs, Deciding::Touching(TOLERANCE)) })
 }
 
 impl Trial<'_> {
-    /// Returns whether the reachable sets under `sets` hold every recording, as it is claimed.
     fn holds(&self, sets: &UncertaintySets) -> Result<bool> {
         let plant = Polynomial { problem: self.problem, effort: Effort::Quick };
         let tube = self.claim.judge(&plant, sets, &Look::proof())?;

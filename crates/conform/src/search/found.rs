@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::side::Side;
 use crate::next_motion::left_out::LeftOutMotions;
+use crate::tube::plant::Costs;
 use crate::tube::rows::{Edge, Row};
 use crate::tube::tube::Tube;
 use crate::tube::witness::Witness;
@@ -13,18 +14,11 @@ use crate::tube::witness::Witness;
 pub(crate) struct Found {
     /// The sets and their reachable sets.
     pub tube: Tube,
-    /// The cost of the sets.
-    pub cost: f64,
-    /// The cost as the paper sums it over distinct sample times.
-    pub cost_of_samples: f64,
+    pub costs: Costs,
     /// No sets cost less, for a linear model.
     pub lower_bound: Option<f64>,
     /// Gap between cost and lower bound, relative to the lower bound, for a linear model.
     pub optimality_gap: Option<f64>,
-    /// The paper's sum (21), for a linear model.
-    pub paper_cost: Option<f64>,
-    /// Σ_k Δt Π_i width_i(t_k), eq. (2).
-    pub hull_volume: f64,
     /// The search, for a model that is not linear.
     pub search: Option<SearchSummary>,
     /// The sets without each motion.
@@ -33,6 +27,21 @@ pub(crate) struct Found {
     pub deciding: Deciding,
     /// The recorded points that decide the sets in directions other than the states.
     pub touching: Vec<Witness>,
+}
+
+impl Found {
+    pub(crate) fn new(tube: Tube, costs: Costs, deciding: Deciding) -> Self {
+        Self {
+            tube,
+            costs,
+            lower_bound: None,
+            optimality_gap: None,
+            search: None,
+            left_out: LeftOutMotions::default(),
+            deciding,
+            touching: Vec::new(),
+        }
+    }
 }
 
 /// A point touches the set when it is within this part of its reach.

@@ -51,7 +51,6 @@ fn room(tolerance: Option<f64>, attempt: i32) -> [f64; 2] {
     }
 }
 
-/// Returns whether every row holds.
 pub(crate) fn encloses(problem: &Problem, tube: &Tube) -> Result<bool> {
     let mut all = true;
     tube.for_each_row(problem, |row| all &= row.holds())?;

@@ -40,7 +40,6 @@ const NEAR: f64 = 0.97;
 /// The end of a search.
 pub(super) struct Ended<'a> {
     pub state: SearchState,
-    /// The last program.
     pub round: Round<'a>,
     /// Its dual objective.
     pub lower_bound: f64,

@@ -18,7 +18,7 @@ use crate::search::found::{Deciding, Found, SearchSummary, TOUCHING};
 use crate::search::optimality::optimality_gap;
 use crate::search::prove::prove;
 use crate::search::search::{Ended, search};
-use crate::tube::plant::{Costs, Plant};
+use crate::tube::plant::Plant;
 
 /// Finds the smallest sets for all recordings of a problem, and those without each motion, unless
 /// the motions were left out before (`left_out`). What a search for the sets of a model that is not
@@ -47,7 +47,6 @@ pub(crate) fn smallest_sets(
     Ok(found)
 }
 
-/// Returns the digest of everything that decides the sets of a problem.
 fn digest(problem: &Problem) -> String {
     let mut digest = Sha256::new();
     let (settings, drive) = (problem.settings(), problem.setup().drive.identity());
@@ -84,8 +83,8 @@ fn finish<'a>(
         Some(_) => claim.judge(plant, &sets, &Look::proof())?,
         None => prove((problem, plant), claim, &sets, program.scale())?,
     };
-    let Costs { cost, of_samples, paper, volume } = plant.costs(&tube)?;
-    let gap = optimality_gap(cost, lower_bound, program.negligible_cost());
+    let costs = plant.costs(&tube)?;
+    let gap = optimality_gap(costs.cost, lower_bound, program.negligible_cost());
     let summary = || SearchSummary {
         rounds: state.rounds,
         reachable_sets: state.reachable_sets,
@@ -93,22 +92,17 @@ fn finish<'a>(
         linearised_cost_of_samples: Some(program.paper_sums(&state.sets).of_samples),
         runs_away: round.runs_away,
     };
+    let deciding = match claim.tolerance() {
+        _ if !is_exact => Deciding::Rows(program.tight(&tube.sets).into_iter().collect()),
+        None => Deciding::Touching(TIGHT),
+        Some(_) => Deciding::Touching(TOUCHING),
+    };
     let found = Found {
-        cost,
-        cost_of_samples: of_samples,
         lower_bound: is_exact.then_some(lower_bound),
         optimality_gap: is_exact.then_some(gap),
-        paper_cost: paper,
-        hull_volume: volume,
         search: (!is_exact).then(summary),
-        left_out: LeftOutMotions::default(),
-        deciding: match claim.tolerance() {
-            _ if !is_exact => Deciding::Rows(program.tight(&tube.sets).into_iter().collect()),
-            None => Deciding::Touching(TIGHT),
-            Some(_) => Deciding::Touching(TOUCHING),
-        },
         touching: touching((problem, plant), &program, &tube, &state.directions),
-        tube,
+        ..Found::new(tube, costs, deciding)
     };
     Ok((found, program, round.rows))
 }

@@ -11,9 +11,7 @@ use crate::tube::grids::Grids;
 /// The envelope of the deviations of one suite on one grid.
 #[derive(Debug, Clone)]
 pub(crate) struct Deviation {
-    /// Index of the suite.
     pub suite: usize,
-    /// Index of the grid.
     pub grid: usize,
     /// The deviations; each bound is outer.
     pub envelope: Envelope,
@@ -22,7 +20,6 @@ pub(crate) struct Deviation {
 /// The nominal motion x̂ of a linear model along a case.
 #[derive(Debug, Clone)]
 pub(crate) struct Nominal {
-    /// Index of the grid.
     pub grid: usize,
     /// x̂ at the samples, enclosed.
     pub trajectory: Trajectory,

@@ -11,9 +11,7 @@ use crate::sets::UncertaintySets;
 /// A sample grid that suites share, with all that depends on the system and the grid only.
 #[derive(Debug)]
 pub(crate) struct Grid {
-    /// The sample times.
     pub times: Arc<TimeGrid>,
-    /// e^{A t_k} and Γ(t_k) at the samples.
     pub propagation: Propagation,
     /// κ(t_k), the gains of the disturbance, 2n x n for each sample.
     pub input_gains: Vec<IntervalMatrix>,

@@ -43,7 +43,6 @@ pub(crate) struct UnprovedRun {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PointOutside {
     pub owner: Owner,
-    /// The recording.
     pub file: String,
     /// The point from the centre of the set, 2n.
     pub deviation: Vec<f64>,
@@ -69,7 +68,6 @@ pub(crate) struct Along {
 }
 
 impl Judged {
-    /// Merges what was found of other points, or at other samples.
     pub(crate) fn merge(mut self, other: Self) -> Self {
         self.points += other.points;
         self.outside += other.outside;
@@ -87,7 +85,6 @@ impl Judged {
         merge(&mut self.unproved, BTreeMap::from([(owner, new)]), UnprovedRun::merge);
     }
 
-    /// Returns the number of points that were not proved.
     pub(crate) fn unproved_count(&self) -> usize {
         self.unproved.values().map(|run| run.count).sum()
     }

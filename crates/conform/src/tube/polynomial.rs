@@ -96,7 +96,7 @@ impl Plant for Polynomial<'_> {
     }
 
     fn costs(&self, tube: &Tube) -> Result<Costs> {
-        let weights = self.problem.settings().weights.of_states(self.problem.shape().states);
+        let weights = self.problem.settings().weights.of_states(self.problem.states());
         let times = tube.strands.iter().map(|strand| strand.times.times());
         let (shares, SampleTimes { parts, step }) =
             (distinct_shares(times.clone()), SampleTimes::new(times));

@@ -20,9 +20,7 @@ pub(crate) const NEGLIGIBLE_RADIUS: f64 = 1e-9;
 /// state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Row {
-    /// Index of the suite.
     pub suite: usize,
-    /// Index of the strand.
     pub strand: usize,
     /// Sample index on its grid.
     pub sample: usize,
@@ -39,7 +37,6 @@ pub(crate) struct Row {
 /// One side of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Edge {
-    /// The side.
     pub side: Side,
     /// The run (index in the source) that reaches furthest.
     pub run: u32,
@@ -58,16 +55,13 @@ impl Row {
 
 /// Recorded values beside the sets of a strand: deviations of a linear model, states of any other.
 pub(crate) struct RecordedBounds<'a> {
-    /// Index of the suite.
     pub suite: usize,
-    /// Index of the strand.
     pub strand: usize,
     /// The values; each bound is outer.
     pub envelope: &'a Envelope,
 }
 
 impl<'a> RecordedBounds<'a> {
-    /// Returns the recorded values of a problem, beside the strands of its tubes.
     pub(crate) fn all(problem: &'a Problem) -> Result<Vec<Self>> {
         let of_grid = |deviation: &'a Deviation| Self {
             suite: deviation.suite,

@@ -107,7 +107,6 @@ impl SearchState {
         bounds
     }
 
-    /// Returns the directions, to be asked of reachable sets.
     pub(crate) fn asked(&self) -> Vec<(At, Vec<f64>)> {
         self.directions.iter().map(|known| (known.at, known.direction.clone())).collect()
     }

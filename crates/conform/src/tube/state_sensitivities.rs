@@ -17,7 +17,6 @@ type Block = [f64; SIDE_BY_SIDE];
 /// The signs of the sensitivities of each state at one sample.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
-    /// The sample.
     pub sample: usize,
     /// For each state, the signs of its row of Φ(t_k, 0): 2n x 2n.
     pub start: Vec<f64>,

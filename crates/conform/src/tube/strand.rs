@@ -31,7 +31,6 @@ pub struct Lost {
 /// The reachable sets on one grid of a linear model, or along one case of any other.
 #[derive(Debug)]
 pub(crate) struct Strand {
-    /// The sample times.
     pub times: Arc<TimeGrid>,
     /// The sets at the samples.
     pub hull: Hull,
@@ -60,7 +59,6 @@ pub(crate) struct HullBounds {
 }
 
 impl Strand {
-    /// Computes the sets of the deviation of a linear model on a grid.
     pub(crate) fn on_grid(grid: &Grid, sets: &UncertaintySets) -> Self {
         let (times, hull) = (Arc::clone(&grid.times), Hull::Deviation(grid.reach(sets)));
         Self { times, hull, lost: None }
@@ -105,7 +103,6 @@ impl From<&Runaway> for Lost {
 }
 
 impl Hull {
-    /// Returns the number of samples that have a set.
     pub(crate) fn len(&self) -> usize {
         match self {
             Self::Deviation(reach) => reach.len(),

@@ -47,7 +47,6 @@ pub struct Tube {
 }
 
 impl Tube {
-    /// Takes computed sets, in which no point was judged.
     pub(crate) fn of(sets: UncertaintySets, enclosure: Enclosure, strands: Vec<Strand>) -> Self {
         Self { sets, enclosure, strands, judged: None }
     }

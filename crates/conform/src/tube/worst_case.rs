@@ -117,7 +117,6 @@ fn at_node(
     (further, outcomes.iter().any(|outcome| !outcome.is_reached()))
 }
 
-/// Returns (R_k r)_i for each state i.
 fn reach(case: &Case, sets: &UncertaintySets, sensitivity: &Sensitivity, k: usize) -> Vec<f64> {
     let radii = || sets.initial_set.radius.iter().chain(&sets.input_set.radius);
     let of_state = |i: usize| {

@@ -255,12 +255,10 @@ impl Fold {
 }
 
 impl FoldState {
-    /// Returns the digest of the recordings of the model that the fold is to check.
     fn model(&self) -> Option<&str> {
         self.compared.as_ref().map(|(digest, _)| digest.as_str())
     }
 
-    /// Returns whether a model file lists each recording.
     pub(super) fn are_listed(&self) -> bool {
         self.runs < LISTED_BELOW
     }

@@ -159,7 +159,6 @@ impl SuiteFold {
     }
 }
 
-/// Replaces a value by what becomes of it.
 fn replace(value: &mut WholeRuns, with: impl FnOnce(WholeRuns) -> WholeRuns) {
     let taken = std::mem::replace(value, WholeRuns::All(BTreeMap::new()));
     *value = with(taken);

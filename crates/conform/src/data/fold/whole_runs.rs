@@ -65,7 +65,6 @@ impl<'a> Deserialize<'a> for WholeRuns {
 }
 
 impl WholeRun {
-    /// Returns the size of the samples in memory.
     fn bytes(&self) -> usize {
         let Run { times, states, torques, temperatures, .. } = &self.run;
         let values = times.len() + states.len() + torques.len() + temperatures.len();

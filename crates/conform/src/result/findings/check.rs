@@ -46,7 +46,6 @@ pub(crate) fn least_growth(growth: &Growth, signals: &Signals) -> String {
     ways(growth, signals).swap_remove(0)
 }
 
-/// Why it cannot be known whether the recordings were used in the fit.
 pub(crate) fn use_unknown(are_listed: bool) -> Finding {
     let why = if are_listed {
         "The fold does not have the SHA-256 of each recording; fold the recordings to check \
@@ -62,7 +61,6 @@ pub(crate) fn use_unknown(are_listed: bool) -> Finding {
     Finding::new(Severity::Info, Code::UseUnknown, text)
 }
 
-/// That no recording of a suite starts near the model's nominal initial state.
 pub(crate) fn other_start(suite: &str) -> Finding {
     let text = format!(
         "suite {suite}: none of its recordings starts near the nominal initial state that the \
@@ -72,7 +70,6 @@ pub(crate) fn other_start(suite: &str) -> Finding {
     Finding::new(Severity::Warning, Code::OtherStart, text).at(format!("suite {suite}"))
 }
 
-/// What differs from the recordings that the model was made from.
 pub(crate) fn other_recordings(other: &OtherData) -> Finding {
     let OtherData { missing, replaced, deciding, added, shares_any, starts_alike } = other;
     let changed: Vec<String> = replaced.iter().map(changed).collect();
@@ -118,7 +115,6 @@ pub(crate) fn at_rest(recordings: &Recordings) -> Option<Finding> {
     (count > 0).then(|| note(&text))
 }
 
-/// Names a recording whose content is not the model's.
 fn changed(run: &Replaced) -> String {
     match run.samples {
         [own, at_hand] if own == at_hand => run.file.clone(),
@@ -135,7 +131,6 @@ fn few(files: &[String]) -> String {
     }
 }
 
-/// Returns the sets with the factors by which they would have to grow.
 fn widened(growth: &Growth) -> [(&'static str, Option<f64>); 3] {
     [("U is", growth.input_set), ("X0 is", growth.initial_set), ("X0 and U are", growth.both_sets)]
 }

@@ -11,7 +11,6 @@ use reachtube_finding::{Finding, Severity};
 /// A bound above this probability is not useful.
 const USELESS: f64 = 0.5;
 
-/// The rows that were compared, and how far their comparison reaches.
 pub(crate) fn reach_of_proof(verdict: &Verdict, states: States, noun: &str) -> Vec<Finding> {
     let info = |code, text: String| Finding::new(Severity::Info, code, text);
     let Verdict { rows, violations, enclosure, .. } = verdict;
@@ -44,7 +43,6 @@ pub(crate) fn reach_of_proof(verdict: &Verdict, states: States, noun: &str) -> V
     all
 }
 
-/// That an enclosure is a fact about recordings, and whether they are enough for a bound.
 pub(crate) fn beyond_recordings(trust: &Trust) -> Vec<Finding> {
     let recorded = "It is a fact about recordings that sets enclose them. It implies nothing \
                     certain about motions, payloads or temperatures that were not recorded.";

@@ -18,7 +18,6 @@ pub(crate) fn of_remarks(code: Code, remarks: &[&Remark], signals: &Signals) -> 
     (!remarks.is_empty()).then(|| warning.at(place))
 }
 
-/// Names a motion that was held out, and made calibration scale the sets.
 pub(crate) fn of_held_out(motion: &str, fitted: &[String], factor: f64) -> Finding {
     let text = format!(
         "The most likely cause: motion {motion}, which was held out, is unlike the motions that \
@@ -82,7 +81,6 @@ fn words(code: Code, noun: &str) -> String {
     words.into()
 }
 
-/// Reports that a fit suits its own motions only.
 pub(crate) fn overfitted(overfit: &Overfit) -> Finding {
     let fact = match overfit {
         Overfit::Calibrated { identified, fitted } => format!(

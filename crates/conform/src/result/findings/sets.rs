@@ -5,7 +5,6 @@ use crate::result::code::Code;
 use crate::tube::tube::Enclosure;
 use reachtube_finding::{Finding, Severity};
 
-/// How many recorded values touch the reachable set.
 pub(crate) fn touching(model: &Model) -> Finding {
     let set = match model.proof.enclosure {
         Enclosure::Inner => "reachable set",

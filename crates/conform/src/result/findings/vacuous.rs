@@ -34,7 +34,6 @@ pub(crate) fn vacuous(model: &Model) -> Option<Finding> {
     )
 }
 
-/// Returns the worst vacuous set in a few words, with all parts that have one.
 pub(crate) fn vacuous_in_brief(model: &Model) -> Option<String> {
     let said = model.usefulness.as_ref().filter(|_| model.is_vacuous())?;
     let sets = worst_first(said);

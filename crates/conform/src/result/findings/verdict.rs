@@ -90,7 +90,6 @@ pub(crate) fn lost_in_brief(lost: &[Lost]) -> Option<String> {
     Some(format!("{case}: {what} {time:.3} s, where {state} grew fastest{more}"))
 }
 
-/// The verdict on recordings that are compared with a model.
 pub(crate) fn verdict_of_check(verdict: &Verdict, settings: &Settings) -> Finding {
     let Verdict { runs, rows, violations, .. } = verdict;
     let (severity, code) = outcome(verdict.conformant);
@@ -110,7 +109,6 @@ pub(crate) fn verdict_of_check(verdict: &Verdict, settings: &Settings) -> Findin
         .with("rows_outside", violations.count as f64)
 }
 
-/// How many recorded points were proved to lie in the reachable set.
 pub(crate) fn points(verdict: &Verdict, states: States) -> Option<Finding> {
     let PointVerdict { points, unproved, outside, notion, .. } = verdict.points.as_ref()?;
     let (set, are_lost) = (verdict.enclosure.set_name(), !verdict.lost.is_empty());
@@ -179,7 +177,6 @@ pub(crate) fn place_outside(place: &Witness, signals: &Signals) -> String {
     )
 }
 
-/// Where a simulated motion diverged.
 pub(crate) fn unstable(case: &str, time: f64) -> Finding {
     let text = format!(
         "{case}: a simulated motion under nearly these sets diverged before {time:.3} s; the \
