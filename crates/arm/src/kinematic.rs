@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
-use reachtube_conform::data::{Condition, Drive, LiveInput, RunInput, Signals};
+use reachtube_conform::data::{Case, Condition, Drive, LiveInput, RunInput, Signals};
 use reachtube_conform::{Error, Result};
 use reachtube_finding::Advice;
 use reachtube_reach::{LinearSystem, System};
@@ -13,6 +13,7 @@ use reachtube_recordings::{Defect, Run};
 
 use crate::arm::Arm;
 use crate::input::grid;
+use crate::input_error;
 use crate::live_input::NoInput;
 use crate::settings::Equations;
 
@@ -65,6 +66,10 @@ impl Drive for Kinematic {
 
     fn signals(&self) -> &Signals {
         &self.0.signals
+    }
+
+    fn input_error(&self, case: &Case) -> Result<(Vec<f64>, usize)> {
+        Ok(input_error::of_accelerations(case))
     }
 
     fn reading(&self) -> String {

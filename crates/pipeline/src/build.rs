@@ -161,11 +161,13 @@ impl Decided<'_> {
         let without_model = (!trial.equations.is_kinematic()).then(without).transpose()?;
         let choices = &chooser.choices;
         answer.model = answer.model.with_preparation(preparation(choices, torque));
-        let wide =
-            TooWide { given, choices, trial: &trial, recordings: &recordings, horizons: &horizons };
+        let better = without_model.as_ref().filter(|without| !without.is_model_better());
+        let (own, tried) = ((&trial, &recordings), &*horizons);
+        let wide = TooWide { given, choices, own, tried, better };
         // What contradicts the robot is to be mended first: no choice can.
         let is_contradicted = findings.iter().any(|found| found.severity == Severity::Failure);
-        let remedies = match is_contradicted || choices.accept(&answer.model) {
+        let remedies = match is_contradicted || (choices.accept(&answer.model) && better.is_none())
+        {
             true => Vec::new(),
             false => wide.remedies(self.evidence, self.robot)?,
         };

@@ -32,8 +32,17 @@ impl Foretold {
 
     /// Returns half the width of the widest set by the joint's displacement.
     pub(crate) fn widest(&self) -> f64 {
-        let ratio = |joint: usize| self.half_width(joint) / self.displacements[joint];
-        (0..self.half_widths.len()).map(ratio).fold(0.0, f64::max)
+        self.ratio(self.widest_joint())
+    }
+
+    /// Returns the joint, from 0, of the widest set.
+    pub(crate) fn widest_joint(&self) -> usize {
+        let joints = 0..self.half_widths.len();
+        joints.max_by(|a, b| self.ratio(*a).total_cmp(&self.ratio(*b))).unwrap_or(0)
+    }
+
+    fn ratio(&self, joint: usize) -> f64 {
+        self.half_width(joint) / self.displacements[joint]
     }
 }
 

@@ -14,6 +14,7 @@ use crate::mean_position::mean_position;
 use crate::robot::{Evidence, Nominal};
 use crate::trial::Trial;
 use crate::windows::Prepared;
+use crate::without_model::WithoutModel;
 use crate::would_help::{nothing_helps, would_help};
 
 /// Windows on which a fit is tried: it takes a thousand times as long as the sets alone.
@@ -34,12 +35,14 @@ const MOST: usize = 2;
 pub(crate) struct TooWide<'a> {
     /// The choices that were given. All others were made, by trying alternatives.
     pub given: &'a Choices,
-    pub trial: &'a Trial<'a>,
-    pub recordings: &'a Prepared<'a>,
+    /// The trial and the recordings behind it.
+    pub own: (&'a Trial<'a>, &'a Prepared<'a>),
     /// The horizons that were tried.
-    pub horizons: &'a [HorizonWidths],
+    pub tried: &'a [HorizonWidths],
     /// All choices.
     pub choices: &'a Choices,
+    /// The sets without a model, if they are better.
+    pub better: Option<&'a WithoutModel>,
 }
 
 /// A choice that was tried, and the widest set with and without it.
@@ -79,25 +82,28 @@ impl TooWide<'_> {
     ///
     /// A job that was cancelled. A choice that cannot be tried is left out.
     pub(crate) fn remedies(&self, evidence: &Evidence, described: &Robot) -> Result<Vec<Finding>> {
+        if let Some(without) = self.better {
+            return Ok(vec![without.remedy(self.own.0)]);
+        }
         let mut tried = Trials::default();
-        let (own, some) = (self.recordings, MOST_WINDOWS);
-        let before = self.widths(self.trial, own, some)?;
+        let (own, some) = (self.own.1, MOST_WINDOWS);
+        let before = self.widths(self.own.0, own, some)?;
         let largest = self.choices.largest_ratio.unwrap_or_default();
-        let best = longest(self.horizons, largest).horizon;
+        let best = longest(self.tried, largest).horizon;
         if self.given.horizon.is_some_and(|given| given != best) {
             // The sets of `horizons` are without the allowance.
-            let after = self.widths_over(best, self.trial, own, some)?;
+            let after = self.widths_over(best, self.own.0, own, some)?;
             tried.add("horizon", best.to_string(), some, [&before, &after]);
         }
         if let Some(equations) = self.given.equations.map(other) {
-            let after = self.widths(&Trial { equations, ..self.trial.clone() }, own, some)?;
+            let after = self.widths(&Trial { equations, ..self.own.0.clone() }, own, some)?;
             tried.add("equations", name(equations), some, [&before, &after]);
         }
         let raw: Vec<&RawLog> = evidence.motions.iter().map(|motion| &*motion.log).collect();
         let expansion = mean_position(&raw);
         if self.given.expansion.as_ref().is_some_and(|given| *given != expansion) {
             let value: Vec<String> = expansion.iter().map(ToString::to_string).collect();
-            let after = self.widths(&Trial { expansion, ..self.trial.clone() }, own, some)?;
+            let after = self.widths(&Trial { expansion, ..self.own.0.clone() }, own, some)?;
             tried.add("expansion", value.join(","), some, [&before, &after]);
         }
         if self.given.identify == Some(false) && evidence.torque != Torque::Compensated {
@@ -105,14 +111,14 @@ impl TooWide<'_> {
             if let Ok(Nominal { robot, logs, .. }) = evidence.identified(described) {
                 let recordings = Prepared { logs: &logs, ..*own };
                 let after =
-                    self.widths(&Trial { robot, ..self.trial.clone() }, &recordings, some)?;
+                    self.widths(&Trial { robot, ..self.own.0.clone() }, &recordings, some)?;
                 tried.add("identify", "true", some, [&before, &after]);
             }
         }
-        if self.trial.fit.is_none() {
+        if self.own.0.fit.is_none() {
             let fit = Some(FitSettings { groups: vec![FITTED], pull: Some(PULL) });
-            let before = self.widths(self.trial, own, FIT_WINDOWS)?;
-            let after = self.widths(&Trial { fit, ..self.trial.clone() }, own, FIT_WINDOWS)?;
+            let before = self.widths(self.own.0, own, FIT_WINDOWS)?;
+            let after = self.widths(&Trial { fit, ..self.own.0.clone() }, own, FIT_WINDOWS)?;
             tried.add("fit", FITTED.name(), FIT_WINDOWS, [&before, &after]);
         }
         Ok(self.findings(tried.0))
@@ -149,7 +155,7 @@ impl TooWide<'_> {
         }
         tried.retain(|tried| tried.after < HELPS * tried.before);
         tried.sort_by(|a, b| a.after.total_cmp(&b.after));
-        let joints = self.trial.robot.joints();
+        let joints = self.own.0.robot.joints();
         let finding = |tried: &Tried| {
             let joint = &joints[tried.joint].name;
             let ratios = [tried.before, tried.after];

@@ -4,6 +4,7 @@ use crate::code::Code;
 use reachtube_finding::{Finding, FrontEnd, Summary};
 
 use crate::build::Built;
+use crate::without_model::WithoutModel;
 
 /// The name of what follows for new motions.
 const NEW_MOTIONS: &str = "new motions";
@@ -25,7 +26,11 @@ impl Built {
             _ if self.contradiction().is_some() => "the recordings contradict the robot".into(),
             (false, ..) => "NOT PROVED conformant".to_string(),
             (true, true, _) => format!("conformant and useful up to {horizon} s"),
-            (true, false, true) => format!("conformant, but vacuous at {horizon} s"),
+            (true, false, true) => {
+                let without = self.worse_than_without().map(WithoutModel::why_better);
+                let without = without.map_or_else(String::new, |why| format!(", and {why}"));
+                format!("conformant, but vacuous at {horizon} s{without}")
+            }
             (true, false, false) => {
                 format!("conformant, but {} at {horizon} s", self.why_useless())
             }

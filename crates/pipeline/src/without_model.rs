@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use reachtube_arm::{ArmModel, Equations};
 use reachtube_conform::{CheckJob, Silent};
-use reachtube_finding::Table;
+use reachtube_finding::{Finding, Table};
 use reachtube_identify::prepare::PreparedLog;
 use reachtube_scalar::number::significant;
 use schemars::JsonSchema;
@@ -21,6 +21,7 @@ use crate::foretold::Foretold;
 use crate::horizon::MOST_WINDOWS;
 use crate::trial::Trial;
 use crate::windows::Prepared;
+use crate::would_help::would_help;
 
 /// Sets without a model beside the sets of the model.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -30,6 +31,9 @@ pub struct WithoutModel {
     /// Half the width of the widest set by the joint's displacement, with the factor that a motion
     /// needs which is left out; `None` where no factor suffices.
     pub widest: Option<f64>,
+    /// The joint, from 0, of that set, and the number of windows.
+    #[serde(skip)]
+    pub(crate) widest_of: [usize; 2],
     /// The same of the model.
     pub widest_of_model: Option<f64>,
     /// For each joint, n, half the width without a model by half the width with it, both with that
@@ -64,12 +68,14 @@ impl WithoutModel {
         }
         let equations = best.map_or(Equations::Velocity, |(equations, _)| equations);
         let other = kinematic(trial, equations);
-        let without = Widened::new(&other, recordings, horizon)?.foretold;
+        let Widened { answer, foretold: without, .. } = Widened::new(&other, recordings, horizon)?;
+        let windows = answer.model.data.run_count();
         let narrower = |joint| without.half_width(joint) / own.half_width(joint);
         let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
         Ok(Self {
             equations,
             widest: finite(without.widest()),
+            widest_of: [without.widest_joint(), windows],
             widest_of_model: finite(own.widest()),
             narrower: (0..own.half_widths.len()).map(narrower).collect(),
             faster: to_faster([trial, &other], recordings, horizon)?,
@@ -111,6 +117,15 @@ impl WithoutModel {
                 format!("without a model the sets are no wider (x {})", significant(self.gain(), 2))
             }
         }
+    }
+
+    /// Returns what the sets without a model would give, as a choice that was not applied.
+    pub(crate) fn remedy(&self, trial: &Trial) -> Finding {
+        let [joint, windows] = self.widest_of;
+        let widths = [self.widest_of_model, self.widest];
+        let widths = widths.map(|widest| widest.unwrap_or(f64::INFINITY));
+        let value = format!("{:?}", self.equations).to_lowercase();
+        would_help("equations", &value, &trial.robot.joints()[joint].name, widths, windows)
     }
 
     /// Returns how the sets without a model compare, in a few words.
@@ -202,7 +217,9 @@ mod tests {
 
     fn compared(narrower: Vec<f64>, faster: Option<[f64; 2]>) -> WithoutModel {
         let (widest, widest_of_model) = (Some(0.9), Some(0.3));
-        WithoutModel { equations: Equations::Held, widest, widest_of_model, narrower, faster }
+        let equations = Equations::Held;
+        let widest_of = [0, 1];
+        WithoutModel { equations, widest, widest_of, widest_of_model, narrower, faster }
     }
 
     #[test]

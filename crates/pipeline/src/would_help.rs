@@ -23,8 +23,14 @@ pub(crate) fn would_help(
         counted(windows, "window")
     );
     let mut remedy = Remedy::new(setting, value);
-    if (setting, value) == ("equations", "model") {
-        remedy.effect = Cow::Borrowed("lets the nominal motions follow the linear model.");
+    match (setting, value) {
+        ("equations", "model") => {
+            remedy.effect = Cow::Borrowed("lets the nominal motions follow the linear model.");
+        }
+        ("equations", "velocity" | "decaying" | "held") => {
+            remedy.effect = Cow::Borrowed("needs neither the robot nor its torque.");
+        }
+        _ => {}
     }
     Finding::new(Severity::Info, Code::WouldHelp, text)
         .at(joint)

@@ -152,13 +152,13 @@ pub(crate) fn grid(step: f64, samples: usize) -> Vec<f64> {
     TimeGrid::uniform(step, samples).times().to_vec()
 }
 
-/// Writes suites, each with its runs, and runs.csv.
+/// Writes suites, each with its runs and a motion of its own, and runs.csv.
 pub(crate) fn write_data_set(folder: &Path, suites: &[(&str, Vec<Recorded>)]) {
-    let mut index = String::from("file,suite\n");
+    let mut index = String::from("file,suite,motion\n");
     for (suite, runs) in suites {
         for (repeat, run) in runs.iter().enumerate() {
             let file = format!("{suite}_{repeat:02}.csv");
-            let _ = writeln!(index, "{file},{suite}");
+            let _ = writeln!(index, "{file},{suite},{suite}");
             std::fs::write(folder.join(file), csv(run)).unwrap();
         }
     }

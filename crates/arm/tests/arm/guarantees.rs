@@ -144,6 +144,29 @@ fn windows_of_one_log_have_no_bound() {
     assert_eq!(kinds(|motion| motion.repeat(64)), (guarantee, indication, SUITES.len()));
 }
 
+/// Suites may share a motion, if nothing says which motions they are.
+#[test]
+fn bounds_of_motions_without_names_are_indications() {
+    let folder = recorded([0.3, 0.4, 0.6, 0.5]);
+    let kinds = || {
+        let problem = |names: &[&str], calibrate: &[&str]| {
+            read(&two_joints(), folder.path(), names, &settings(calibrate))
+        };
+        let scenario = conform_all(&problem(&["a", "b"], &[])).trust;
+        let calibrated = conform_all(&problem(&[], &["c", "d"])).trust;
+        let fit = problem(&["a", "b"], &[]);
+        let model = Model::new(&fit, &conform_all(&fit));
+        let check = check_of(&folder, &model, &["c", "d"]).trust.unwrap();
+        [scenario.kind, calibrated.kind, check.kind].map(Option::unwrap)
+    };
+    assert_eq!(kinds(), [TrustKind::Guarantee; 3]);
+    let index = folder.path().join("runs.csv");
+    let text = std::fs::read_to_string(&index).unwrap();
+    let lines = text.lines().map(|line| line.rsplit_once(',').unwrap().0);
+    std::fs::write(&index, lines.collect::<Vec<_>>().join("\n")).unwrap();
+    assert_eq!(kinds(), [TrustKind::Indication; 3]);
+}
+
 /// The scenario bound is a guarantee only where its theorem's conditions are met.
 #[test]
 fn a_bound_whose_conditions_are_not_met_is_an_indication() {
