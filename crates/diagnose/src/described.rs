@@ -6,11 +6,11 @@ use reachtube_robot::Robot;
 
 use crate::agreement::median;
 use crate::change::Change;
-use crate::contradiction::Contradiction;
+use crate::contradiction::{Contradiction, names};
 use crate::hypothesis::Hypothesis;
 use crate::likeliest::{Misfit, likeliest_fault};
 use crate::moments::{JointTerms, Moments, Terms, gravity, inertia, recorded};
-use crate::signals::Signals;
+use crate::signals::{Signals, move_alike};
 
 /// Numbers of samples that are compared, once and for each of many faults.
 const SAMPLES: usize = 4000;
@@ -50,6 +50,9 @@ const FACTOR: f64 = 5.0;
 /// less is left, factors that differ by more than [`UNEVEN`] from joint to joint are units.
 const EXACT: f64 = 0.03;
 const UNEVEN: f64 = 1.5;
+
+/// Friction that takes less than this part of the power shows no sign of the torques.
+const DISSIPATES: f64 = 1e-3;
 
 /// Part of the squares of a torque that is left where nothing explains it.
 const NOISE: f64 = 0.9;
@@ -123,6 +126,7 @@ impl<'a> Described<'a> {
         if found.is_empty() {
             found.extend(self.fault());
         }
+        found.extend(self.alike());
         (found, count)
     }
 
@@ -144,6 +148,20 @@ impl<'a> Described<'a> {
             gravity > 0.0 && gravity >= HEAVY * largest
         };
         self.moving().filter(is_heavy).collect()
+    }
+
+    /// Returns joints that move alike, so that nothing shows whose columns are whose.
+    fn alike(&self) -> Option<Contradiction> {
+        let n = self.joints.len();
+        let pairs = (0..n).flat_map(|one| (one + 1..n).map(move |other| [one, other]));
+        let mut alike = pairs.filter(|pair| move_alike(&self.recordings, n, *pair));
+        let joints = alike.next()?.to_vec();
+        let text = format!(
+            "{} move alike in all recordings: exchanged columns, and parts of inertia and friction \
+             that both share, do not show; record motions that differ",
+            names(self.robot, &joints)
+        );
+        Some(Contradiction { joints, is_certain: false, ..Contradiction::new(text) })
     }
 
     /// Returns the fault of the columns without which the description explains the torques best.
@@ -231,16 +249,16 @@ impl<'a> Described<'a> {
             false => score(&|own| own.stated.min(own.scaled.missed)),
         };
         let are_opposite = is_opposite && {
-            let power = |joint: usize| {
-                let power = self.moments.friction_power(joint, &under[joint].values);
-                power / self.joints[joint].stated
+            let power = |joint: usize| self.moments.friction_power(joint, &under[joint].values);
+            // What is left of recordings without noise is rounding.
+            let least = |missed: f64, own: &JointMisfit| missed + EXACT * EXACT * own.stated;
+            let better = |joint: usize| {
+                let own = &self.joints[joint];
+                (least(under[joint].missed, own) / least(own.opposite, own)).ln()
             };
-            let better = score(&|own| own.opposite);
-            if better.abs() > SCALED.ln() {
-                better > 0.0
-            } else {
-                self.moving().map(power).sum::<f64>() < 0.0
-            }
+            let better: f64 = self.moving().map(better).sum();
+            let dissipates = self.moving().map(power).sum::<f64>() > DISSIPATES;
+            if better.abs() > SCALED.ln() { better > 0.0 } else { !dissipates }
         };
         (gain < CLEAR.ln()).then(|| match are_opposite {
             true => Contradiction::all_opposite(self.robot.joint_count()),

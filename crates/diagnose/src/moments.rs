@@ -129,12 +129,13 @@ impl Moments {
         if count < FEWEST { 0.0 } else { gram[(0, 0)] - gram[(0, one)].powi(2) / count }
     }
 
-    /// Returns the power that friction takes from a joint, with the values of its terms; below 0
-    /// if it drives the joint.
+    /// Returns the power that friction takes from a joint, with the values of its terms, by the
+    /// product of the root mean squares of torque and speed; below 0 if it drives the joint.
     pub(crate) fn friction_power(&self, joint: usize, friction: &[f64]) -> f64 {
         let (gram, speed) = (self.whole(joint), FRICTION[1]);
-        friction[friction.len() - 3] * gram[(speed, speed)]
-            + friction[friction.len() - 2] * gram[(speed, FRICTION[2])]
+        let power = friction[friction.len() - 3] * gram[(speed, speed)]
+            + friction[friction.len() - 2] * gram[(speed, FRICTION[2])];
+        power / (gram[(0, 0)] * gram[(speed, speed)]).sqrt().max(f64::MIN_POSITIVE)
     }
 
     /// Explains what `torque` leaves of a joint's torque by `free` terms and friction.

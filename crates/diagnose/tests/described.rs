@@ -151,6 +151,27 @@ fn a_zero_that_is_off_is_named_with_its_joint() {
 }
 
 #[test]
+fn joints_that_move_alike_are_not_called_exchanged() {
+    let robot = Robot::lwa4p();
+    let mut recordings: Vec<Recording> = (1..=4).map(|seed| Recording::new(&robot, seed)).collect();
+    for recording in &mut recordings {
+        let [q, qd, qdd, torques] = &mut recording.0;
+        for rows in [&mut *q, qd, qdd] {
+            rows.chunks_mut(N).for_each(|row| row[2] = row[1]);
+        }
+        for k in 0..SAMPLES {
+            let at = k * N..(k + 1) * N;
+            let links = robot.inverse_dynamics(&q[at.clone()], &qd[at.clone()], &qdd[at.clone()]);
+            torques[at].copy_from_slice(links.as_slice());
+        }
+    }
+    let signals = recordings.iter().map(Recording::signals).collect();
+    let (found, _) = Described::new(&robot, Torque::Motor, signals).contradictions();
+    assert!(found.len() == 1 && !found[0].is_certain, "{found:?}");
+    assert!(found[0].text.starts_with("joint2, joint3 move alike"), "{found:?}");
+}
+
+#[test]
 fn torques_that_nothing_explains_are_named() {
     let mut random = Random(9);
     let noise = found(&Robot::lwa4p(), |_, tau| tau.fill_with(|| random.next()));

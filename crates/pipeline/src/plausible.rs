@@ -162,7 +162,7 @@ mod tests {
             "{:?}",
             found(-1.0)
         );
-        assert!(found(0.1)[0].contains("of hinge are 0.10 times"), "{:?}", found(0.1));
+        assert!(found(0.1)[0].contains("of hinge are 0.1"), "{:?}", found(0.1));
     }
 
     #[test]
