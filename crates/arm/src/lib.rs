@@ -32,7 +32,7 @@
 //! assert!(monitor.push(0.0, &[0.1; 6], &[0.0; 6], &[0.0; 6])?.is_empty());
 //! // The arm jumps.
 //! let left = monitor.push(0.004, &[0.2; 6], &[0.0; 6], &[0.0; 6])?;
-//! assert!(left[0].proved && left[0].joint == 1 && left[0].excess > 0.09);
+//! assert!(left[0].proved && left[0].part == 1 && left[0].excess > 0.09);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

@@ -67,6 +67,8 @@ fn numbers(text: &str) -> Value {
         }
     }
     strip(&mut model);
+    // Runs of a log name their motions, and the index of the CSV files does not.
+    model["trust"].as_object_mut().unwrap().remove("kind");
     model
 }
 

@@ -99,7 +99,7 @@ fn a_changed_part_is_refused() {
             "a, b or drift does not agree with its robot",
         ),
         ("/drive/robot/joint/0/armature", json!(-1.5), "armature = -1.5 is negative"),
-        ("/a/2", json!([0.0]), "has not the size for the 2 joints"),
+        ("/a/2", json!([0.0]), "has not the size for 2 inputs"),
         ("/drive/settings/expansion_point/q", json!([0.0]), "expansion point"),
         ("/data/suites/0/runs/0/sha256", json!("0".repeat(64)), "data.sha256"),
         ("/verified", json!(false), "verified does not agree with proof"),
