@@ -162,8 +162,7 @@ impl Decided<'_> {
         let choices = &chooser.choices;
         answer.model = answer.model.with_preparation(preparation(choices, torque));
         let better = without_model.as_ref().filter(|without| !without.is_model_better());
-        let (own, tried) = ((&trial, &recordings), &*horizons);
-        let wide = TooWide { given, choices, own, tried, better };
+        let wide = TooWide { given, choices, own: (&trial, &recordings), tried: &horizons, better };
         // What contradicts the robot is to be mended first: no choice can.
         let is_contradicted = findings.iter().any(|found| found.severity == Severity::Failure);
         let remedies = match is_contradicted || (choices.accept(&answer.model) && better.is_none())
@@ -171,7 +170,6 @@ impl Decided<'_> {
             true => Vec::new(),
             false => wide.remedies(self.evidence, self.robot)?,
         };
-
         // What was held out.
         let raw: Vec<RawLog> =
             split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
