@@ -45,6 +45,9 @@ class JointRow:
     growth: float | None
     """The factor by which the set would have to grow where a motion that was held out leaves it
     furthest; ``None`` if none could be compared."""
+    narrower: float | None
+    """By which factor the set is narrower than without a model, both as wide as a motion needs them
+    that was left out; ``None`` if none was compared."""
 
 
 @dataclass(frozen=True)

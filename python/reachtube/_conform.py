@@ -46,7 +46,7 @@ def conform(
     noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
     sensor_noise: npt.ArrayLike | None = None,
     nominal: Literal["mean", "own"] = "mean",
-    equations: Literal["model", "robot"] = "model",
+    equations: Literal["model", "robot", "velocity", "decaying", "held"] = "model",
     calibrate: Sequence[str] = (),
     method: Literal["program", "bisection"] = "program",
     until: float | None = None,
@@ -107,7 +107,9 @@ def conform(
         Where nominal motions start: at the mean of a suite's first states, or at each run's own.
     equations
         Whose equations of motion nominal motions satisfy: the model's, or the robot's own, which
-        leaves to U what the robot itself does not explain and needs a linear model.
+        leaves to U what the robot itself does not explain and needs a linear model. ``"velocity"``,
+        ``"decaying"`` and ``"held"`` need neither the robot nor its torque: U is a set of
+        accelerations, about a motion whose velocity or acceleration at the start goes on.
     calibrate
         Motions that are held out from the fit, to which the sets are then scaled.
     method

@@ -87,7 +87,6 @@ def test_a_fit_that_cannot_be_is_refused_before_anything_is_read(
         ({"torque": "compensated", "fit": ["bogus"]}, "fit: unknown variant `bogus`"),
         ({"torque": "compensated", "pull": 0.02}, "fit names no group"),
         ({"torque": "compensated", "fit": "viscous", "pull": 2.0}, "from 0 to 1"),
-        ({"torque": "link", "fit": ["viscous"]}, "no friction in link torques"),
         ({"torque": "compensated", "fit": ["viscous"], "notion": "exact"}, 'notion="hull"'),
     ]:
         with pytest.raises(rt.ReachtubeError, match=words):

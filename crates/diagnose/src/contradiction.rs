@@ -1,4 +1,4 @@
-use reachtube_robot::Robot;
+use reachtube_robot::{Joint, Robot};
 
 /// What recorded torques contradict in the description of a robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,10 +22,11 @@ impl Contradiction {
 
     /// Torques without gravity, of which they have a part of what the description needs in the
     /// heaviest joint.
-    pub(crate) fn no_gravity(name: &str, needed: f64, part: f64) -> Self {
+    pub(crate) fn no_gravity(joint: &Joint, needed: f64, part: f64) -> Self {
+        let (name, unit) = (&joint.name, joint.kind.force_unit());
         let text = format!(
-            "the recorded torques contain no gravity: the description needs {needed:.1} N m of \
-             {name} against it (root mean square), and the torques have {:.2} times that; the \
+            "the recorded torques contain no gravity: the description needs {needed:.1} {unit} \
+             of {name} against it (root mean square), and the torques have {:.2} times that; the \
              driver probably publishes efforts without gravity: record the motors' torques or \
              currents, or add the controller's own gravity torque to the columns",
             part.abs()

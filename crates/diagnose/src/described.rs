@@ -22,8 +22,12 @@ const OFFSET: f64 = 0.05;
 /// Joints whose described gravity torque is at least this part of the largest one show gravity.
 const HEAVY: f64 = 0.1;
 
-/// Part of the described gravity below which recorded torques contain none.
+/// Part of the described gravity below which recorded torques contain none, in parts of the factor
+/// of the described inertia that they show, ...
 const NO_GRAVITY: f64 = 0.25;
+
+/// ... and where they show none: a unit makes torques small, too.
+const NO_GRAVITY_AT_ALL: f64 = 0.02;
 
 /// Factors of gravity between which torques show its direction.
 const SIZES: [f64; 2] = [0.5, 2.0];
@@ -140,12 +144,17 @@ impl<'a> Described<'a> {
         own.scaled.missed < EXPLAINS * own.by_friction
     }
 
-    /// Returns the joints of which the description needs much torque against gravity.
+    /// Returns the joints of which the description needs much torque against gravity, or much
+    /// force.
     fn heavy(&self) -> Vec<usize> {
-        let largest = self.joints.iter().map(|joint| joint.gravity).fold(0.0, f64::max);
+        let kind = |joint: usize| self.robot.joints()[joint].kind;
+        let largest = |of: usize| {
+            let alike = (0..self.joints.len()).filter(|joint| kind(*joint) == kind(of));
+            alike.map(|joint| self.joints[joint].gravity).fold(0.0, f64::max)
+        };
         let is_heavy = |joint: &usize| {
             let gravity = self.joints[*joint].gravity;
-            gravity > 0.0 && gravity >= HEAVY * largest
+            gravity > 0.0 && gravity >= HEAVY * largest(*joint)
         };
         self.moving().filter(is_heavy).collect()
     }
@@ -184,11 +193,15 @@ impl<'a> Described<'a> {
 
     /// Returns the factor of the described inertia that the torques show, 1 if they show none.
     fn inertia_factor(&self) -> f64 {
+        self.shown_inertia().unwrap_or(1.0)
+    }
+
+    fn shown_inertia(&self) -> Option<f64> {
         let weight = |joint: &usize| self.joints[*joint].parts.error(0).powi(-2);
         let weighted = |joint: usize| weight(&joint) * self.joints[joint].parts.values[0];
         let weights: f64 = self.moving().map(|joint| weight(&joint)).sum();
         let factor = self.moving().map(weighted).sum::<f64>() / weights;
-        if factor * weights.sqrt() > SIGNIFICANT { factor } else { 1.0 }
+        (factor * weights.sqrt() > SIGNIFICANT).then_some(factor)
     }
 
     /// Returns the gravitational acceleration that explains the torques, in the directions that
@@ -208,10 +221,10 @@ impl<'a> Described<'a> {
             .copied()
             .max_by(|a, b| self.joints[*a].gravity.total_cmp(&self.joints[*b].gravity))?;
         let [found, stated] = self.shown_gravity();
-        let factor = self.inertia_factor();
+        let most = self.shown_inertia().map_or(NO_GRAVITY_AT_ALL, |factor| NO_GRAVITY * factor);
         let is_free = |joint: &usize| {
             let parts = &self.joints[*joint].parts;
-            parts.values[1].abs() + 2.0 * parts.error(1) < NO_GRAVITY * factor
+            parts.values[1].abs() + 2.0 * parts.error(1) < most
         };
         let none = |joint: usize| self.moments.explained(joint, &recorded(), &[inertia()]).missed;
         let gain: f64 = heavy.iter().map(|j| (none(*j) / self.joints[*j].stated).ln()).sum();
@@ -220,8 +233,8 @@ impl<'a> Described<'a> {
             && heavy.iter().all(is_free)
             && gain < CLEAR.ln())
         .then(|| {
-            let name = &self.robot.joints()[heaviest].name;
-            Contradiction::no_gravity(name, self.joints[heaviest].gravity, part)
+            let joint = &self.robot.joints()[heaviest];
+            Contradiction::no_gravity(joint, self.joints[heaviest].gravity, part)
         })
     }
 
