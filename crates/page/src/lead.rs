@@ -3,7 +3,7 @@
 use reachtube_arm::ArmModel;
 use reachtube_conform::plausibility::PartWidth;
 use reachtube_conform::{Model, SuiteReach};
-use reachtube_pipeline::{Built, HorizonWidths};
+use reachtube_pipeline::{Built, HorizonWidths, WithoutModel};
 use reachtube_robot::JointKind;
 use reachtube_scalar::number::{significant, two_digits_up};
 
@@ -52,6 +52,8 @@ pub(super) fn of_built(built: &Built, lead: &mut Lead) {
     lead.facts = facts_of_sets(&built.answer.model);
     lead.facts.push(("Held out".into(), built.held_out_words()));
     lead.facts.extend(built.allowance_words().map(|words| ("Allowance".into(), words)));
+    let without = built.without_model.as_ref().map(WithoutModel::words);
+    lead.facts.extend(without.map(|words| ("Without a model".into(), words)));
     lead.facts.push(("New motions".into(), built.held_out.next_motion.clone()));
     if let Some((figure, caption)) = over_horizons(built) {
         (lead.figure, lead.caption) = (Some(figure), caption);

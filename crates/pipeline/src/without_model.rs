@@ -129,7 +129,8 @@ impl WithoutModel {
     }
 
     /// Returns how the sets without a model compare, in a few words.
-    pub(crate) fn words(&self) -> String {
+    #[must_use]
+    pub fn words(&self) -> String {
         let [own, without] = [self.widest_of_model, self.widest].map(percent);
         let faster = self.faster.map_or_else(String::new, |[own, without]| {
             let [own, without] = [own, without].map(|part| percent(Some(part)));
