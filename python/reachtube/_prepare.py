@@ -61,7 +61,7 @@ def prepare(
         friction, for ``torque="compensated"``.
     torque
         The kind of the recorded torques, if they are compensated: ``"motor"``, the default, or
-        ``"link"`` for torques behind the gear, to which is added what the motors' inertia takes.
+        ``"link"`` for torques behind the gear, which are the input of a robot without ``armature``.
     columns
         Columns of logs with ambiguous names, by the keys ``q``, ``qd``, ``tau``, ``current``,
         ``time``, ``first``, ``time_unit`` and ``angle``, such as ``{"q": "pos_{}", "first": 0}``.

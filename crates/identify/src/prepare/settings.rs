@@ -26,8 +26,8 @@ pub struct PrepareSettings {
     pub max_gap: Option<f64>,
     /// The kind of the recorded torques if they are compensated; motor torques by default.
     ///
-    /// Torques behind the gear, `link`, do not drive the motors' inertia. What it takes, J q̈ with
-    /// the acceleration of the filtered velocity, is added to the input.
+    /// Torques behind the gear, `link`, do not drive the motors' inertia, and become the input of a
+    /// robot without `armature`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub torque: Option<Torque>,
     /// Columns of recordings as robots and drivers log them, if their names are ambiguous.
