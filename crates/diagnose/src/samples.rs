@@ -1,5 +1,7 @@
 use reachtube_recordings::Run;
 
+use crate::agreement::median;
+
 /// A jump is at least this far beyond what the velocity explains, rad or m, ...
 const LEAST_JUMP: f64 = 0.03;
 
@@ -64,9 +66,7 @@ fn zeros(run: &Run) -> Option<WrongSamples> {
 }
 
 fn usual_step(run: &Run) -> f64 {
-    let mut steps: Vec<f64> = run.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps[steps.len() / 2]
+    median(run.times.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or_default()
 }
 
 /// Returns the first jump of a joint's position that its velocity does not explain, and the number

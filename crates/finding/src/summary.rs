@@ -4,12 +4,12 @@ use crate::printable::{COLUMNS, printable};
 use crate::table::Table;
 
 /// Largest number of lines.
-const LINES: usize = 16;
+const LINES: usize = 18;
 
 /// Smallest number of rows that a table keeps.
 const FEWEST_ROWS: usize = 2;
 
-/// An answer for people on at most 16 lines of 100 columns. The
+/// An answer for people on at most 18 lines of 100 columns. The
 /// [`Report`](crate::Report) has the rest.
 ///
 /// # Examples

@@ -12,7 +12,7 @@ use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_R
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
-use crate::findings::{ignored_motors, impossible_links, unless_accepted};
+use crate::findings::{ignored_motors, impossible_links, measures_the_filter, unless_accepted};
 use crate::first_choices::first_choices;
 use crate::held_out::Split;
 use crate::horizon::{
@@ -155,8 +155,8 @@ impl Decided<'_> {
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (found, horizons) = found.map_err(|error| error.because(&findings))?;
         let Widened { mut answer, finding, foretold, .. } = found;
-        findings.extend(finding);
         let horizon = chooser.choices.horizon.unwrap_or_default();
+        findings.extend(finding.into_iter().chain(measures_the_filter(horizon, shortest)));
         let without = || WithoutModel::new(&trial, &recordings, horizon, &foretold);
         let without_model = (!trial.equations.is_kinematic()).then(without).transpose()?;
         let choices = &chooser.choices;

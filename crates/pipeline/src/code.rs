@@ -5,6 +5,8 @@ reachtube_finding::codes! {
         WouldHelp = "would-help",
         /// The recordings contradict the robot's description, or the dynamics of rigid bodies.
         Contradiction = "contradiction",
+        /// The horizon is shorter than half a period of the low-pass's cut-off.
+        ShortHorizon = "short-horizon",
         /// Positions that were whole turns away from other recordings were moved.
         TurnsMoved = "turns-moved",
     }

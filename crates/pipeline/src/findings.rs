@@ -55,6 +55,15 @@ pub(crate) fn ignored_motors(robot: &Robot, torque: Torque) -> Option<String> {
     })
 }
 
+/// Makes the warning that a horizon \[s\] is shorter than half a period of the cut-off, if it is.
+pub(crate) fn measures_the_filter(horizon: f64, shortest: f64) -> Option<Finding> {
+    let text = format!(
+        "the horizon of {horizon} s is shorter than half a period of the cut-off, {shortest:.2} s: \
+         its sets show what the low-pass does, and not what the robot does"
+    );
+    (horizon < shortest).then(|| warning(Code::ShortHorizon, &text))
+}
+
 /// Makes the warning that no allowance of the sets encloses a motion that was left out.
 pub(crate) fn not_enclosed(left_out: &LeftOut) -> Finding {
     let motion = &left_out.motion;

@@ -114,7 +114,8 @@ impl WithoutModel {
                 percent(Some(without))
             ),
             _ => {
-                format!("without a model the sets are no wider (x {})", significant(self.gain(), 2))
+                let gain = significant(self.gain(), 2);
+                format!("without a model the sets are no wider, {gain} times as wide,")
             }
         }
     }
@@ -136,8 +137,11 @@ impl WithoutModel {
             let [own, without] = [own, without].map(|part| percent(Some(part)));
             format!("; of faster motions {without} outside (with it {own})")
         });
-        let gain = significant(self.gain(), 2);
-        format!("sets x {gain} as wide, the widest {without} (with it {own}){faster}")
+        let times = match self.gain() {
+            gain if gain.is_finite() => format!("sets {} times as wide, the", significant(gain, 2)),
+            _ => "the".into(),
+        };
+        format!("{times} widest {without} (with it {own}){faster}")
     }
 }
 
@@ -164,7 +168,7 @@ fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result
     }
     let [slower, faster] =
         [&slower, &faster].map(|logs| Prepared { logs, divides: false, ..*recordings });
-    let outside = |trial: &Trial| -> Result<f64> {
+    let part_outside = |trial: &Trial| -> Result<f64> {
         let trial = Trial { allowance: None, fit: None, ..trial.clone() };
         let model = trial.run(slower.cut(horizon, MOST_WINDOWS)?)?.model;
         let setup = model.setup()?;
@@ -172,8 +176,13 @@ fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result
         let verdict = check.run(&Silent)?.verdict;
         Ok(verdict.violations.count as f64 / verdict.rows.max(1) as f64)
     };
+    let outside = |trial: &Trial| match part_outside(trial) {
+        Err(error) if trial.progress.is_cancelled() => Err(error),
+        // A motion that cannot be followed is not foretold.
+        part => Ok(part.unwrap_or(1.0)),
+    };
     let [own, without] = trials.map(outside);
-    Ok(own.ok().zip(without.ok()).map(|(own, without)| [own, without]))
+    Ok(Some([own?, without?]))
 }
 
 /// Returns the recordings of the slower and of the faster half of the motions; none of a single
@@ -229,14 +238,17 @@ mod tests {
         assert!(better.is_model_better());
         assert_eq!(
             better.words(),
-            "sets x 2 as wide, the widest 90 % (with it 30 %); of faster motions 20 % outside \
+            "sets 2 times as wide, the widest 90 % (with it 30 %); of faster motions 20 % outside \
              (with it 1 %)"
         );
         let wider = compared(vec![0.5, 1.9], None);
-        assert!(!wider.is_model_better() && wider.why_better().contains("no wider (x 0.97)"));
+        assert!(!wider.is_model_better() && wider.why_better().contains("no wider, 0.97 times as"));
         let slower = compared(vec![2.0, 2.0], Some([0.4, 0.1]));
         assert!(!slower.is_model_better());
         assert!(slower.why_better().starts_with("of faster motions 40 % of the rows leave"));
+        let lost = WithoutModel { widest: None, ..compared(vec![f64::INFINITY], None) };
+        assert!(lost.is_model_better());
+        assert_eq!(lost.words(), "the widest without bound (with it 30 %)");
         // Neither foretells anything.
         assert!(!compared(vec![f64::NAN], None).is_model_better());
     }

@@ -27,7 +27,7 @@ Then: reachtube inspect --data windows";
 /// The torques that can be compensated.
 const TORQUES: Choices = &[
     ("motor", "at the output side of the gear"),
-    ("link", "from a joint torque sensor; the motor's inertia is added"),
+    ("link", "from a joint torque sensor, for a robot without `armature`"),
 ];
 
 /// Filter recordings, cut them into windows, and write them as test suites

@@ -22,8 +22,8 @@ pub struct PreparedLog {
     pub tau: Vec<f64>,
     /// Temperatures of the joints \[°C\], row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
-    /// Estimates of each sample from earlier samples alone ([`Run::before`]), row-major K x 3n;
-    /// empty if there are none.
+    /// The accelerations at each sample, as far as it and earlier ones alone tell
+    /// ([`Run::before`]), rad/s², row-major K x n; empty if unknown.
     ///
     /// [`Run::before`]: reachtube_recordings::Run::before
     pub before: Vec<f64>,
@@ -163,13 +163,13 @@ impl PreparedLog {
     #[must_use]
     pub fn interval(&self, range: std::ops::Range<usize>) -> Self {
         let n = self.joints;
-        let of = |values: &[f64], n: usize| match values {
+        let of = |values: &[f64]| match values {
             [] => vec![],
             values => values[range.start * n..range.end * n].to_vec(),
         };
         let [q, qd, qdd, tau, temperatures, slowest] =
             [&self.q, &self.qd, &self.qdd, &self.tau, &self.temperatures, &self.slowest]
-                .map(|values| of(values, n));
+                .map(|values| of(values));
         Self {
             name: self.name.clone(),
             joints: n,
@@ -180,7 +180,7 @@ impl PreparedLog {
             qdd,
             tau,
             temperatures,
-            before: of(&self.before, 3 * n),
+            before: of(&self.before),
             order: self.order,
             slowest,
         }

@@ -8,7 +8,7 @@ use crate::prepare::resample::{median_step, resampled};
 use crate::prepare::settings::{PrepareSettings, VelocitySource, gain_of_each_joint};
 use crate::prepare::signals::{Signals, set_column, without_motion};
 use rayon::prelude::*;
-use reachtube_recordings::Run;
+use reachtube_recordings::{Run, Torque};
 use reachtube_robot::friction::Coulomb;
 use reachtube_robot::{Joint, Robot};
 
@@ -60,6 +60,15 @@ pub fn prepare(
     let mut changes =
         described(logs.iter().map(PreparedLog::len).sum(), &changes, settings, cut_off);
     changes.extend(compensated.map(compensation));
+    let has_motors = |robot: &&Robot| {
+        settings.torque == Some(Torque::Link)
+            && robot.joints().iter().any(|joint| joint.armature > 0.0)
+    };
+    changes.extend(compensated.filter(has_motors).map(|_| {
+        "torques behind the gears do not drive the motors: this is the input of the robot without \
+         `armature`, which `conform` then needs"
+            .to_string()
+    }));
     Ok(Prepared { logs, cut_off, changes })
 }
 

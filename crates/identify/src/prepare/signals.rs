@@ -48,18 +48,20 @@ impl<'a> Signals<'a> {
         Lag::contradict(&lags, self.step)
     }
 
-    /// Returns estimates of each sample from the last `span` \[s\] alone, K x 3n.
+    /// Returns the accelerations as far as the last `span` \[s\] alone tells, K x n.
     pub(super) fn before(&self, span: f64, differentiated: bool) -> Vec<f64> {
         let n = self.raw.run.joints;
         let past = Past::new(span, self.step, !differentiated);
         let mut rows = Vec::new();
         for joint in 0..n {
-            let [q, qd] = [Run::q, Run::qd].map(|of| self.even(of, joint));
-            rows.resize(3 * n * q.len(), 0.0);
-            for (k, row) in rows.chunks_exact_mut(3 * n).enumerate() {
-                let estimate = past.estimate(&q[..=k], &qd[..=k]);
-                estimate.into_iter().enumerate().for_each(|(i, value)| row[i * n + joint] = value);
-            }
+            let values = match differentiated {
+                true => self.even(Run::q, joint),
+                false => self.even(Run::qd, joint),
+            };
+            rows.resize(n * values.len(), 0.0);
+            let column: Vec<f64> =
+                (0..values.len()).map(|k| past.acceleration(&values[..=k])).collect();
+            set_column(&mut rows, joint, n, &column);
         }
         rows
     }
