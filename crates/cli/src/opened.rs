@@ -1,5 +1,7 @@
 //! A model and the recordings it is compared with.
 
+use std::path::PathBuf;
+
 use reachtube::Model;
 use reachtube::arm::{self, OfArm};
 use reachtube::conform::{
@@ -7,7 +9,7 @@ use reachtube::conform::{
 };
 use reachtube::export::ExportCase;
 use reachtube::finding::{FrontEnd, Summary};
-use reachtube::pipeline::check_job;
+use reachtube::pipeline::{check_job, unexplained_by_model};
 
 use crate::data_arguments::{DataArguments, ModelArguments};
 use crate::error::{Error, Result};
@@ -19,6 +21,8 @@ pub(crate) struct OpenedCheck {
     pub model: Model,
     pub problem: Problem,
     tube: Tube,
+    data: PathBuf,
+    max_gap: Option<f64>,
 }
 
 impl OpenedCheck {
@@ -64,7 +68,7 @@ impl OpenedCheck {
             .keep(keep);
         let bar = Progress::new();
         let conform::Opened { model, problem, tube } = job.open(&bar)?;
-        Ok(Self { model, problem, tube })
+        Ok(Self { model, problem, tube, data: args.data.clone(), max_gap: args.max_gap })
     }
 
     /// Prints notes as [`print_notes`] does.
@@ -84,10 +88,16 @@ impl OpenedCheck {
         Ok(ExportCase::all(&self.problem, &self.tube)?)
     }
 
-    /// Compares the recordings with the reachable sets.
+    /// Compares the recordings with the reachable sets. Where they leave them, says what they show
+    /// to be the cause.
     pub(crate) fn check(&self) -> Result<Check> {
         let _bar = Progress::new();
-        Ok(check(&self.model, &self.problem, &self.tube)?)
+        let check = check(&self.model, &self.problem, &self.tube)?;
+        if check.holds() {
+            return Ok(check);
+        }
+        let paths = [self.data.clone()];
+        Ok(check.explained_by(unexplained_by_model(&self.model, &paths, self.max_gap)?))
     }
 
     /// Returns a check on a few lines.

@@ -115,6 +115,13 @@ impl Check {
         .with_findings(model)
     }
 
+    /// Adds what the recordings show to be the cause of values that leave the sets.
+    #[must_use]
+    pub fn explained_by(mut self, causes: Vec<Finding>) -> Self {
+        self.findings.extend(causes);
+        self
+    }
+
     /// Returns whether the model was proved to enclose all recordings.
     #[must_use]
     pub fn holds(&self) -> bool {

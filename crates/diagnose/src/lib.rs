@@ -9,7 +9,8 @@
 //!   contain gravity, along which direction, and in which unit. Each [`Contradiction`] has its
 //!   number and remedy.
 //!
-//! [`wrong_samples`] finds samples that cannot be right whatever the robot is.
+//! [`torque_lag`] finds by how much torques come later than the motion that they belong to,
+//! [`payload`] the body at the last link that a recording shows, and [`wrong_samples`] finds samples that cannot be right whatever the robot is.
 //!
 //! [`Agreement`] is the measure of how recorded torques follow the ones that a robot needs, and
 //! [`input`] what recorded torques mean for a robot.
@@ -21,8 +22,11 @@ mod contradiction;
 mod described;
 mod free_misfit;
 mod hypothesis;
+mod late;
 mod likeliest;
 mod moments;
+mod needed;
+mod payload;
 mod reading;
 mod robot_misfit;
 mod samples;
@@ -35,6 +39,9 @@ pub use contradiction::Contradiction;
 pub use described::Described;
 pub use free_misfit::FreeMisfit;
 pub use hypothesis::{Columns, Hypothesis};
+pub use late::torque_lag;
+pub use needed::NeededTorques;
+pub use payload::{Payload, payload};
 pub use reading::gains;
 pub use robot_misfit::RobotMisfit;
 pub use samples::{WrongSamples, wrong_samples};

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-use reachtube_diagnose::{Contradiction, Described, Signals};
+use reachtube_diagnose::{Contradiction, Described, NeededTorques, Signals, payload, torque_lag};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
@@ -57,6 +57,66 @@ impl Recording {
         let [q, qd, qdd, torques] = &self.0;
         let moves = qd.iter().map(|qd| qd.abs() > 0.02).collect();
         Signals { step: STEP, motion: [q, qd, qdd], torques, moves }
+    }
+
+    /// Returns the torques beside the ones that the described arm needs with the same friction.
+    fn needed(&self) -> NeededTorques<'_> {
+        let (robot, [q, qd, qdd, torques]) = (Robot::lwa4p(), &self.0);
+        let rows = q.chunks(N).zip(qd.chunks(N)).zip(qdd.chunks(N));
+        let needed = rows.flat_map(|((q, qd), qdd)| {
+            let links = robot.inverse_dynamics(q, qd, qdd);
+            let torque = |j: usize| links[j] + 0.4 * qdd[j] + 3.0 * qd[j] + 2.0 * qd[j].signum();
+            (0..N).map(torque).collect::<Vec<f64>>()
+        });
+        let needed = needed.collect();
+        NeededTorques { step: STEP, motion: [q, qd, qdd], recorded: torques, needed }
+    }
+}
+
+#[test]
+fn a_payload_is_found_with_its_mass() {
+    for added in [2.0, 0.5, -0.3] {
+        let mut description = Robot::lwa4p().description().clone();
+        let last = &mut description.joints[N - 1];
+        last.mass += added;
+        last.gravity_moments.iter_mut().for_each(|moments| moments.mass += added);
+        let loaded = Robot::from_description(&description).unwrap();
+        for seed in [1, 2] {
+            let recording = Recording::new(&loaded, seed);
+            let found = payload(&Robot::lwa4p(), &recording.needed());
+            let found = found.unwrap_or_else(|| panic!("{added} {seed}"));
+            assert!((found.mass - added).abs() < 0.1 + 0.05 * added.abs(), "{added}: {found:?}");
+            assert!(found.explained > 0.7, "{found:?}");
+        }
+    }
+    let unloaded = Recording::new(&Robot::lwa4p(), 1);
+    assert_eq!(payload(&Robot::lwa4p(), &unloaded.needed()), None);
+    // Friction that is higher is no payload.
+    let mut rubbing = Recording::new(&Robot::lwa4p(), 1);
+    let [_, qd, _, torques] = &mut rubbing.0;
+    torques.iter_mut().zip(qd).for_each(|(torque, qd)| *torque += 3.0 * *qd);
+    assert_eq!(payload(&Robot::lwa4p(), &rubbing.needed()), None);
+}
+
+#[test]
+fn torques_that_come_late_are_found_and_a_payload_is_no_lag() {
+    let late = |recording: &mut Recording, samples: usize| {
+        let torques = &mut recording.0[3];
+        let first = torques[..N].repeat(samples);
+        torques.truncate(torques.len() - first.len());
+        torques.splice(0..0, first);
+    };
+    for samples in [0, 2, 5] {
+        let mut recordings: Vec<Recording> =
+            (1..=4).map(|seed| Recording::new(&Robot::lwa4p(), seed)).collect();
+        recordings.iter_mut().for_each(|recording| late(recording, samples));
+        let needed: Vec<NeededTorques> = recordings.iter().map(Recording::needed).collect();
+        let found = torque_lag(&needed, N);
+        let expected = STEP * samples as f64;
+        match samples {
+            0 => assert_eq!(found, None),
+            _ => assert!(found.is_some_and(|lag| (lag - expected).abs() < 2e-3), "{found:?}"),
+        }
     }
 }
 

@@ -108,8 +108,14 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [before, after] = self.fixed();
         let room = LINES.saturating_sub(before.len() + after.len());
-        let whole_table = 1 + self.table.rows.len();
-        let warnings = self.warnings_within(room.saturating_sub(whole_table).max(1));
+        let rows = self.table.rows.len();
+        // Where not all fits, the first warning stays, and the most important rows.
+        let least_table = 1 + rows.min(FEWEST_ROWS + 1);
+        let first =
+            self.warnings.first().map_or(0, |first| wrapped(&format!("warning: {first}")).len());
+        let first =
+            (first + usize::from(self.warnings.len() > 1)).min(room.saturating_sub(least_table));
+        let warnings = self.warnings_within(room.saturating_sub(1 + rows).max(first).max(1));
         let table = self.table_within(room.saturating_sub(warnings.len()));
         for line in [before, table, warnings, after].concat() {
             writeln!(f, "{}", printable(&line))?;

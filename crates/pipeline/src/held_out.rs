@@ -168,6 +168,27 @@ impl Recording {
         let log = RawLog { run: part, ..RawLog::clone(&self.log) };
         Self { log: Arc::new(log), motion: self.motion.clone() }
     }
+
+    /// Returns the recording with its torques earlier by `lag`, s, in whole samples, without the
+    /// samples that then have none.
+    pub(crate) fn with_earlier_torques(&self, lag: f64) -> Self {
+        let mut log = RawLog::clone(&self.log);
+        let (n, run) = (log.run.joints, &mut log.run);
+        let steps = run.len().saturating_sub(1).max(1) as f64;
+        let shift = (lag * steps / run.duration()).round() as isize;
+        let (moved, kept) = (shift.unsigned_abs(), run.len().saturating_sub(shift.unsigned_abs()));
+        let [torques, others] = if shift > 0 { [moved, 0] } else { [0, moved] };
+        let rows = |values: &[f64], width: usize, from: usize| {
+            values.iter().skip(width * from).take(width * kept).copied().collect::<Vec<f64>>()
+        };
+        run.torques = rows(&run.torques, n, torques);
+        run.states = rows(&run.states, 2 * n, others);
+        run.temperatures = rows(&run.temperatures, n, others);
+        run.times = rows(&run.times, 1, others);
+        let first = run.times.first().copied().unwrap_or(0.0);
+        run.times.iter_mut().for_each(|time| *time -= first);
+        Self { log: Arc::new(log), motion: self.motion.clone() }
+    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@ use reachtube_arm::ArmModel;
 use std::path::{Path, PathBuf};
 
 use reachtube_conform::{CheckJob, Model, Setup};
-use reachtube_identify::prepare::{PrepareSettings, RawLog, check_window};
-use reachtube_recordings::{DataSet, MemoryRuns, Preparation, any_simulated};
+use reachtube_identify::prepare::{PrepareSettings, PreparedLog, RawLog, check_window};
+use reachtube_recordings::{DataSet, MemoryRuns, Preparation, Torque, any_simulated};
 use reachtube_robot::Robot;
 
 use crate::error::{Error, Result};
@@ -53,18 +53,9 @@ pub fn prepared(
     paths: &[PathBuf],
     max_gap: Option<f64>,
 ) -> Result<MemoryRuns> {
-    let Preparation { torque, gains, cut_off, window, columns, log, .. } = preparation;
-    let robot = Robot::from_description(&model.robot())?;
-    let settings = PrepareSettings {
-        gains: gains.clone(),
-        torque: Some(*torque),
-        max_gap: max_gap.or(preparation.max_gap),
-        columns: columns.clone(),
-        log: log.clone(),
-        ..PrepareSettings::default()
-    };
-    let raw = read_logs(paths, &robot, &settings)?;
-    window.map_or(Ok(()), |window| check_window(window, &raw))?;
+    let later = Later::read(model, preparation, paths, max_gap)?;
+    let (raw, window) = (&later.raw, &preparation.window);
+    window.map_or(Ok(()), |window| check_window(window, raw))?;
     if let Some(warming) = model.arm().correction.as_ref().filter(|known| known.differs_by_run()) {
         let logs: Vec<&RawLog> = raw.iter().collect();
         if let Some(file) = unknown_warmth(&logs, warming.reference_temperatures.is_some()) {
@@ -72,8 +63,8 @@ pub fn prepared(
             return Err(Error::Choice { key: "data", value, needed: WARMTH });
         }
     }
-    let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    let (from_start, origins) = (window.is_none(), &origins_of(&raw));
+    let logs = later.logs()?;
+    let (from_start, origins) = (window.is_none(), &origins_of(raw));
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
     let prepared =
@@ -84,4 +75,41 @@ pub fn prepared(
         (None, None) => longest,
     };
     Ok(prepared.cut(horizon, usize::MAX)?.named(windows_of(paths)))
+}
+
+/// Logs that are prepared as the recordings of a model were.
+pub(crate) struct Later {
+    pub raw: Vec<RawLog>,
+    pub robot: Robot,
+    pub settings: PrepareSettings,
+    torque: Torque,
+    cut_off: f64,
+}
+
+impl Later {
+    pub(crate) fn read(
+        model: &Model,
+        preparation: &Preparation,
+        paths: &[PathBuf],
+        max_gap: Option<f64>,
+    ) -> Result<Self> {
+        let Preparation { torque, gains, cut_off, columns, log, .. } = preparation;
+        let robot = Robot::from_description(&model.robot())?;
+        let settings = PrepareSettings {
+            gains: gains.clone(),
+            torque: Some(*torque),
+            max_gap: max_gap.or(preparation.max_gap),
+            columns: columns.clone(),
+            log: log.clone(),
+            ..PrepareSettings::default()
+        };
+        let raw = read_logs(paths, &robot, &settings)?;
+        let (torque, cut_off) = (*torque, cut_off.unwrap_or(f64::INFINITY));
+        Ok(Self { raw, robot, settings, torque, cut_off })
+    }
+
+    /// Returns the logs with the inputs of the model's robot.
+    pub(crate) fn logs(&self) -> Result<Vec<PreparedLog>> {
+        prepare_for(&self.raw, &self.robot, self.torque, &self.settings, self.cut_off)
+    }
 }

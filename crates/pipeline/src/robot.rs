@@ -23,7 +23,7 @@ use crate::windows::Prepared;
 const GOOD: f64 = 0.1;
 
 /// The identified robot must leave less than this part of what the description leaves.
-const BETTER: f64 = 0.8;
+pub(crate) const BETTER: f64 = 0.8;
 
 /// Length of the windows over which torque is compared, s, and their number.
 const WINDOW: f64 = 0.1;
@@ -86,6 +86,10 @@ impl Evidence<'_> {
         }
         if !chosen.is_swapped {
             chosen.findings.splice(0..0, contradictions);
+        }
+        let is_named = chosen.findings.iter().any(|found| found.numbers.contains_key("lag"));
+        if !is_certain && !chosen.is_swapped && !is_named {
+            chosen.findings.extend(self.unexplained_causes(described, &chosen)?);
         }
         Ok(chosen)
     }
@@ -174,7 +178,7 @@ impl Evidence<'_> {
     }
 
     /// Returns the recordings as the robot's are, with their torques.
-    fn filtered(&self) -> Result<Vec<PreparedLog>> {
+    pub(crate) fn filtered(&self) -> Result<Vec<PreparedLog>> {
         let raw: Vec<RawLog> =
             self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         if self.torque == Torque::Compensated {
@@ -211,7 +215,11 @@ impl Evidence<'_> {
     }
 
     /// Identifies the robot, which is the step `name` of the job.
-    fn identify(&self, described: &Robot, name: &str) -> Result<(Robot, Vec<Implausible>)> {
+    pub(crate) fn identify(
+        &self,
+        described: &Robot,
+        name: &str,
+    ) -> Result<(Robot, Vec<Implausible>)> {
         let settings = IdentifySettings {
             rest: self.rest.clone(),
             one_joint: self.one_joint.clone(),
@@ -232,7 +240,7 @@ impl Evidence<'_> {
         Ok((Robot::from_description(&description)?, implausible_results))
     }
 
-    fn prepared(&self, robot: &Robot) -> Result<Nominal> {
+    pub(crate) fn prepared(&self, robot: &Robot) -> Result<Nominal> {
         let raw: Vec<RawLog> =
             self.motions.iter().map(|motion| RawLog::clone(&motion.log)).collect();
         let logs = prepare_for(&raw, robot, self.torque, self.settings, self.cut_off)?;
@@ -253,7 +261,7 @@ impl Evidence<'_> {
         Ok(part.unwrap_or(f64::INFINITY))
     }
 
-    fn unexplained_part(&self, nominal: &Nominal) -> Result<f64> {
+    pub(crate) fn unexplained_part(&self, nominal: &Nominal) -> Result<f64> {
         let none = BTreeMap::new();
         let (from_start, divides, simulated, shortest) = (false, false, false, 0.0);
         let (logs, origins) = (&*nominal.logs, &none);
@@ -312,6 +320,6 @@ pub(crate) fn prepare_for(
     Ok(prepare(raw, settings, cut_off, Some(robot))?.logs)
 }
 
-fn percent(part: f64) -> String {
+pub(crate) fn percent(part: f64) -> String {
     if part.is_finite() { format!("{:.0} %", 100.0 * part) } else { "all".into() }
 }

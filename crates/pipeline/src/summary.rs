@@ -58,19 +58,22 @@ impl Built {
         }
         // What was mended in the recordings comes before what was made of them.
         summary.verdict.splice(0..0, self.moved());
-        // A contradiction is the cause, and no other is sought.
+        // What was found in the recordings is the cause; else the likeliest one is said.
+        let of_recordings =
+            |found: &&Finding| found.code == Code::Contradiction && !self.is_useful();
+        let found = self.contradiction().or_else(|| self.findings.iter().find(of_recordings));
         if !self.is_useful() && self.contradiction().is_none() {
-            let findings = self.answer.model.findings().into_iter();
-            let causes = findings.filter(|finding| finding.code == reachtube_conform::Code::Cause);
-            summary.verdict.extend(causes.map(|finding| finding.written_for(FrontEnd::Choices)));
+            let findings = self.answer.model.findings();
+            let is_cause = |other: &&Finding| other.code == reachtube_conform::Code::Cause;
+            let causes = found.into_iter().chain(findings.iter().filter(is_cause));
+            let cause = causes.map(|cause| cause.written_for(FrontEnd::Choices)).next();
+            summary.verdict.extend(cause);
         }
         summary.table = self.answer.table_at_horizon(&self.held_out.growth);
         if let Some(without) = &self.without_model {
             without.add_to(&mut summary.table);
         }
-        let is_said = |other: &&Finding| {
-            Some(*other) == self.contradiction() || other.code == Code::TurnsMoved
-        };
+        let is_said = |other: &&Finding| Some(*other) == found || other.code == Code::TurnsMoved;
         let warnings = self.findings.iter().filter(|other| !is_said(other));
         summary.warnings = warnings.map(|finding| finding.written_for(front_end)).collect();
         summary.facts.retain(|(name, _)| name != NEW_MOTIONS);

@@ -25,10 +25,11 @@ impl Check {
         // The cause and its remedy are part of the model's own answer.
         let warnings = model.warnings.iter().filter(|warning| warning.code != Code::Cause);
         let warnings = warnings.map(|warning| format!("of the model itself: {}", brief(warning)));
+        let causes = self.findings.iter().filter(|finding| finding.code == Code::Cause);
         let other = self.findings.iter().filter(|finding| {
             finding.code == Code::OtherRecordings && finding.severity == Severity::Warning
         });
-        let other = other.map(|finding| finding.text.clone());
+        let other = causes.clone().chain(other).map(|finding| finding.text.clone());
         let mut summary = Summary {
             verdict: self.verdict_lines(model).into_iter().chain(other).collect(),
             warnings: warnings.collect(),
@@ -58,6 +59,8 @@ impl Check {
         let next = match lost {
             Some(remedy) => Some(remedy.written_for(front_end)),
             // `model` has no calibration: it holds motions out by itself.
+            // Recordings that differ by a known cause do not belong among the model's.
+            None if causes.count() > 0 => None,
             None if is_wide && model.preparation.is_some() => {
                 Some("make the model again, with these recordings among its logs".into())
             }

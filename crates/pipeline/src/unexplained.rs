@@ -1,0 +1,188 @@
+//! What torques show that a robot leaves unexplained: that they come late, or a payload.
+
+use std::path::PathBuf;
+
+use reachtube_arm::ArmModel;
+use reachtube_conform::{Code, Model};
+use reachtube_diagnose::{NeededTorques, Payload, payload, torque_lag};
+use reachtube_finding::{Finding, Severity};
+use reachtube_identify::prepare::{PreparedLog, prepare};
+use reachtube_recordings::Torque;
+use reachtube_robot::Robot;
+use reachtube_scalar::number::counted;
+
+use crate::error::Result;
+use crate::findings::{contradiction, warning};
+use crate::held_out::Recording;
+use crate::prepared::Later;
+use crate::robot::{BETTER, Evidence, Nominal, percent};
+
+/// Number of recordings that are named.
+const NAMED: usize = 3;
+
+/// Part of a robot's mass below which a payload is not named.
+const LEAST_MASS: f64 = 0.01;
+
+impl Evidence<'_> {
+    /// Returns findings about what the chosen robot leaves unexplained: a lag of the torques, with
+    /// which the choice of the robot, made again, explains clearly more of them, or payloads.
+    pub(crate) fn unexplained_causes(
+        &self,
+        described: &Robot,
+        chosen: &Nominal,
+    ) -> Result<Vec<Finding>> {
+        if self.torque == Torque::Compensated {
+            return Ok(Vec::new());
+        }
+        let recorded = self.filtered()?;
+        let robot = driven(&chosen.robot, self.torque);
+        let needed = needed(&robot, &recorded, &chosen.logs);
+        if let Some(lag) = torque_lag(&needed, robot.joint_count()) {
+            let parts = self.without_lag(described, chosen, lag)?;
+            return Ok((parts[1] < BETTER * parts[0])
+                .then(|| late(lag, parts))
+                .into_iter()
+                .collect());
+        }
+        Ok(payloads(&robot, &recorded, &needed).into_iter().map(|text| mild(&text)).collect())
+    }
+
+    /// Returns which part of the torques is unexplained as they are, and if they are moved by a lag,
+    /// s, before the robot is chosen.
+    fn without_lag(&self, described: &Robot, chosen: &Nominal, lag: f64) -> Result<[f64; 2]> {
+        let motions: Vec<Recording> =
+            self.motions.iter().map(|motion| motion.with_earlier_torques(lag)).collect();
+        let (rest, one_joint) = (self.rest.clone(), self.one_joint.clone());
+        let evidence = Evidence { motions: &motions, rest, one_joint, ..*self };
+        let again = match chosen.is_identified {
+            true => evidence.identify(described, "identify without the lag")?.0,
+            false => chosen.robot.clone(),
+        };
+        let again = evidence.unexplained_part(&evidence.prepared(&again)?)?;
+        Ok([self.unexplained_part(chosen)?, again])
+    }
+}
+
+/// Returns what recordings show that the robot of a model leaves unexplained: a lag of their torques,
+/// or payloads. The recordings are read as [`prepared`](crate::prepared) does; the list is empty for a
+/// model that takes recordings as they are, or knows no torque.
+///
+/// # Errors
+///
+/// As [`prepared`](crate::prepared).
+pub fn unexplained_by_model(
+    model: &Model,
+    paths: &[PathBuf],
+    max_gap: Option<f64>,
+) -> Result<Vec<Finding>> {
+    let Some(preparation) = &model.preparation else { return Ok(Vec::new()) };
+    let Some(cut_off) = preparation.cut_off else { return Ok(Vec::new()) };
+    let later = Later::read(model, preparation, paths, max_gap)?;
+    if preparation.torque == Torque::Compensated || model.arm().settings.equations.is_kinematic() {
+        return Ok(Vec::new());
+    }
+    let recorded = prepare(&later.raw, &later.settings, cut_off, None)?.logs;
+    let robot = driven(&later.robot, preparation.torque);
+    let inputs = later.logs()?;
+    let needed = needed(&robot, &recorded, &inputs);
+    let found = match torque_lag(&needed, robot.joint_count()) {
+        Some(lag) => vec![lag_words(lag)],
+        None => payloads(&robot, &recorded, &needed),
+    };
+    Ok(found.iter().map(|text| warning(Code::Cause, text)).collect())
+}
+
+/// Returns the robot that torques drive: behind the gears, the one without motors.
+fn driven(robot: &Robot, torque: Torque) -> Robot {
+    match torque {
+        Torque::Link => robot.without_motors(),
+        Torque::Motor | Torque::Compensated => robot.clone(),
+    }
+}
+
+fn mild(text: &str) -> Finding {
+    Finding { severity: Severity::Warning, ..contradiction(text) }
+}
+
+/// Makes the finding about a lag, with which parts of the torques are unexplained as they are and
+/// without it.
+fn late(lag: f64, unexplained: [f64; 2]) -> Finding {
+    let [stated, without] = unexplained.map(percent);
+    let text =
+        format!("{}: {without} of them is then unexplained in place of {stated}", lag_words(lag));
+    Finding { numbers: [("lag".to_string(), lag)].into(), ..mild(&text) }
+}
+
+fn lag_words(lag: f64) -> String {
+    let [later, earlier] = if lag > 0.0 { ["later", "earlier"] } else { ["earlier", "later"] };
+    let ms = (1e3 * lag).abs().round();
+    format!(
+        "the torques come {ms} ms {later} than the motion that they belong to; move their columns \
+         {earlier} by that, or record torques and positions with one clock"
+    )
+}
+
+/// Returns what is said of payloads in recordings, if some show one: of recordings with more at the
+/// last link than the robot, and of recordings with less.
+fn payloads(robot: &Robot, logs: &[PreparedLog], needed: &[NeededTorques]) -> Vec<String> {
+    let mass: f64 = robot.inertial_parameters().iter().step_by(10).sum();
+    let of_log = |(log, needed): (&PreparedLog, &NeededTorques)| {
+        let found = payload(robot, needed)?;
+        (found.mass.abs() > LEAST_MASS * mass).then(|| (log.name.clone(), found))
+    };
+    let found: Vec<(String, Payload)> = logs.iter().zip(needed).filter_map(of_log).collect();
+    let signs = [1.0, -1.0].map(|sign| {
+        let own = found.iter().filter(|(_, payload)| payload.mass * sign > 0.0);
+        let own: Vec<&(String, Payload)> = own.collect();
+        (!own.is_empty()).then(|| payload_words(&own, logs.len()))
+    });
+    signs.into_iter().flatten().collect()
+}
+
+/// Says which recordings, of all, have a payload of which mass, and what it explains.
+fn payload_words(found: &[&(String, Payload)], of: usize) -> String {
+    let mean = |value: &dyn Fn(&Payload) -> f64| {
+        found.iter().map(|(_, payload)| value(payload)).sum::<f64>() / found.len() as f64
+    };
+    let (mass, explained) = (mean(&|payload| payload.mass), mean(&|payload| payload.explained));
+    let names: Vec<&str> = found.iter().take(NAMED).map(|(name, _)| name.as_str()).collect();
+    let more = match found.len() - names.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let less = if mass > 0.0 { "more" } else { "less" };
+    format!(
+        "in {}{more} ({} of {}) the last link has {:.1} kg {less} than the robot's: that explains {} \
+         of what is unexplained there; make a model for each payload, or give the tool in the \
+         description",
+        names.join(", "),
+        found.len(),
+        counted(of, "recording"),
+        mass.abs(),
+        percent(explained)
+    )
+}
+
+/// Returns filtered torques beside what the robot needs for their motions: what was taken off them
+/// to give the model's `inputs`, which is filtered alike, and the rest of its equations of motion.
+fn needed<'a>(
+    robot: &Robot,
+    recorded: &'a [PreparedLog],
+    inputs: &'a [PreparedLog],
+) -> Vec<NeededTorques<'a>> {
+    let of_log = |(recorded, inputs): (&'a PreparedLog, &'a PreparedLog)| {
+        let at = |k: usize| {
+            let (q, qd) = (inputs.q(k), inputs.qd(k));
+            let of_motion = robot.motion_torque(q, qd, inputs.qdd(k)) + robot.viscous_torque(qd);
+            let taken = recorded.tau(k).iter().zip(inputs.tau(k)).map(|(tau, input)| tau - input);
+            taken.zip(&of_motion).map(|(taken, of_motion)| taken + of_motion).collect::<Vec<f64>>()
+        };
+        NeededTorques {
+            step: recorded.step,
+            motion: [&inputs.q, &inputs.qd, &inputs.qdd],
+            recorded: &recorded.tau,
+            needed: (0..recorded.len()).flat_map(at).collect(),
+        }
+    };
+    recorded.iter().zip(inputs).map(of_log).collect()
+}
