@@ -26,26 +26,20 @@ struct Squares {
 pub fn torque_lag(recordings: &[NeededTorques], joints: usize) -> Option<f64> {
     let step = recordings.first()?.step;
     let squares = Squares::of(recordings, joints, step);
-    let choose = |halves: &[usize]| {
-        let lags = 0..=2 * squares.longest;
-        lags.min_by(|a, b| squares.score(halves, *a).total_cmp(&squares.score(halves, *b)))
-    };
     let carries_over = |[own, other]: [usize; 2]| {
-        choose(&[own]).is_some_and(|lag| squares.score(&[other], lag) < CLEAR.ln())
+        let chosen = squares.least(&[own]);
+        chosen.is_some_and(|lag| squares.score(&[other], lag) < CLEAR.ln())
     };
-    if ![[0, 1], [1, 0]].into_iter().all(carries_over) {
-        return None;
-    }
-    let both = [0, 1];
-    let best = choose(&both)?;
-    let is_inside = best > 0 && best < 2 * squares.longest;
-    // The parabola through three sums has its least between samples.
-    let between = is_inside.then(|| {
-        let [before, at, after] = [best - 1, best, best + 1].map(|lag| squares.sum(&both, lag));
-        0.5 * (before - after) / (before - 2.0 * at + after)
-    });
-    let samples = best as f64 - squares.longest as f64 + between.unwrap_or(0.0);
-    Some(samples * step)
+    let is_clear = [[0, 1], [1, 0]].into_iter().all(carries_over);
+    is_clear.then(|| squares.lag(step)).flatten()
+}
+
+/// Returns the lag as [`torque_lag`] does, also where it explains little: what is left of one that
+/// was taken off.
+#[must_use]
+pub fn remaining_lag(recordings: &[NeededTorques], joints: usize) -> Option<f64> {
+    let step = recordings.first()?.step;
+    Squares::of(recordings, joints, step).lag(step)
 }
 
 impl Squares {
@@ -71,6 +65,25 @@ impl Squares {
             }
         }
         Self { longest, halves }
+    }
+
+    /// Returns the lag that leaves least.
+    fn least(&self, halves: &[usize]) -> Option<usize> {
+        let lags = 0..=2 * self.longest;
+        lags.min_by(|a, b| self.score(halves, *a).total_cmp(&self.score(halves, *b)))
+    }
+
+    /// Returns the lag that leaves least of both halves, s.
+    fn lag(&self, step: f64) -> Option<f64> {
+        let both = [0, 1];
+        let best = self.least(&both)?;
+        let is_inside = best > 0 && best < 2 * self.longest;
+        // The parabola through three sums has its least between samples.
+        let between = is_inside.then(|| {
+            let [before, at, after] = [best - 1, best, best + 1].map(|lag| self.sum(&both, lag));
+            0.5 * (before - after) / (before - 2.0 * at + after)
+        });
+        Some((best as f64 - self.longest as f64 + between.unwrap_or(0.0)) * step)
     }
 
     fn of_joint(&self, halves: &[usize], lag: usize, joint: usize) -> f64 {

@@ -39,7 +39,7 @@ pub use contradiction::Contradiction;
 pub use described::Described;
 pub use free_misfit::FreeMisfit;
 pub use hypothesis::{Columns, Hypothesis};
-pub use late::torque_lag;
+pub use late::{remaining_lag, torque_lag};
 pub use needed::NeededTorques;
 pub use payload::{Payload, payload};
 pub use reading::gains;

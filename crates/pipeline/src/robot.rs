@@ -89,7 +89,8 @@ impl Evidence<'_> {
         }
         let is_named = chosen.findings.iter().any(|found| found.numbers.contains_key("lag"));
         if !is_certain && !chosen.is_swapped && !is_named {
-            chosen.findings.extend(self.unexplained_causes(described, &chosen)?);
+            let causes = self.unexplained_causes(described, &chosen)?;
+            chosen.findings.splice(0..0, causes);
         }
         Ok(chosen)
     }

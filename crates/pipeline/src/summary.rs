@@ -29,7 +29,7 @@ impl Built {
             (true, false, true) => {
                 let without = self.worse_than_without().map(WithoutModel::why_better);
                 let without = without.map_or_else(String::new, |why| format!(", and {why}"));
-                format!("conformant, but vacuous at {horizon} s{without}")
+                format!("conformant, but vacuous{without} at {horizon} s")
             }
             (true, false, false) => {
                 format!("conformant, but {} at {horizon} s", self.why_useless())

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use reachtube_arm::ArmModel;
 use reachtube_conform::{Code, Model};
-use reachtube_diagnose::{NeededTorques, Payload, payload, torque_lag};
+use reachtube_diagnose::{NeededTorques, Payload, payload, remaining_lag, torque_lag};
 use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{PreparedLog, prepare};
 use reachtube_recordings::Torque;
@@ -19,6 +19,9 @@ use crate::robot::{BETTER, Evidence, Nominal, percent};
 
 /// Number of recordings that are named.
 const NAMED: usize = 3;
+
+/// Times that a lag is taken off and looked for again.
+const ROUNDS: usize = 3;
 
 /// Part of a robot's mass below which a payload is not named.
 const LEAST_MASS: f64 = 0.01;
@@ -38,7 +41,7 @@ impl Evidence<'_> {
         let robot = driven(&chosen.robot, self.torque);
         let needed = needed(&robot, &recorded, &chosen.logs);
         if let Some(lag) = torque_lag(&needed, robot.joint_count()) {
-            let parts = self.without_lag(described, chosen, lag)?;
+            let (lag, parts) = self.without_lag(described, chosen, lag)?;
             return Ok((parts[1] < BETTER * parts[0])
                 .then(|| late(lag, parts))
                 .into_iter()
@@ -47,19 +50,41 @@ impl Evidence<'_> {
         Ok(payloads(&robot, &recorded, &needed).into_iter().map(|text| mild(&text)).collect())
     }
 
-    /// Returns which part of the torques is unexplained as they are, and if they are moved by a lag,
-    /// s, before the robot is chosen.
-    fn without_lag(&self, described: &Robot, chosen: &Nominal, lag: f64) -> Result<[f64; 2]> {
-        let motions: Vec<Recording> =
-            self.motions.iter().map(|motion| motion.with_earlier_torques(lag)).collect();
-        let (rest, one_joint) = (self.rest.clone(), self.one_joint.clone());
-        let evidence = Evidence { motions: &motions, rest, one_joint, ..*self };
-        let again = match chosen.is_identified {
-            true => evidence.identify(described, "identify without the lag")?.0,
-            false => chosen.robot.clone(),
-        };
-        let again = evidence.unexplained_part(&evidence.prepared(&again)?)?;
-        Ok([self.unexplained_part(chosen)?, again])
+    /// Takes a lag, s, off the torques, and chooses the robot again: the one that was chosen has
+    /// taken some of it for friction. Returns the lag with what then was left of it, and which part
+    /// of the torques is unexplained with it and without it.
+    fn without_lag(
+        &self,
+        described: &Robot,
+        chosen: &Nominal,
+        mut lag: f64,
+    ) -> Result<(f64, [f64; 2])> {
+        let with = self.unexplained_part(chosen)?;
+        let mut without = with;
+        for _ in 0..ROUNDS {
+            let motions: Vec<Recording> =
+                self.motions.iter().map(|motion| motion.with_earlier_torques(lag)).collect();
+            let (rest, one_joint) = (self.rest.clone(), self.one_joint.clone());
+            let evidence = Evidence { motions: &motions, rest, one_joint, ..*self };
+            let robot = match chosen.is_identified {
+                true => {
+                    evidence.identify(described, &format!("identify without {lag} s of lag"))?.0
+                }
+                false => chosen.robot.clone(),
+            };
+            let again = evidence.prepared(&robot)?;
+            without = evidence.unexplained_part(&again)?;
+            let recorded = evidence.filtered()?;
+            let needed = needed(&driven(&robot, self.torque), &recorded, &again.logs);
+            let Some(step) = needed.first().map(|log| log.step) else { break };
+            let rest = remaining_lag(&needed, robot.joint_count()).unwrap_or(0.0);
+            // Torques were moved by whole samples.
+            lag = (lag / step).round() * step + rest;
+            if rest.abs() < 0.5 * step {
+                break;
+            }
+        }
+        Ok((lag, [with, without]))
     }
 }
 
@@ -86,7 +111,7 @@ pub fn unexplained_by_model(
     let inputs = later.logs()?;
     let needed = needed(&robot, &recorded, &inputs);
     let found = match torque_lag(&needed, robot.joint_count()) {
-        Some(lag) => vec![lag_words(lag)],
+        Some(lag) => Some(lag_words(lag)),
         None => payloads(&robot, &recorded, &needed),
     };
     Ok(found.iter().map(|text| warning(Code::Cause, text)).collect())
@@ -122,45 +147,49 @@ fn lag_words(lag: f64) -> String {
     )
 }
 
-/// Returns what is said of payloads in recordings, if some show one: of recordings with more at the
-/// last link than the robot, and of recordings with less.
-fn payloads(robot: &Robot, logs: &[PreparedLog], needed: &[NeededTorques]) -> Vec<String> {
+/// Returns what is said of payloads in recordings, if some show one.
+fn payloads(robot: &Robot, logs: &[PreparedLog], needed: &[NeededTorques]) -> Option<String> {
     let mass: f64 = robot.inertial_parameters().iter().step_by(10).sum();
     let of_log = |(log, needed): (&PreparedLog, &NeededTorques)| {
         let found = payload(robot, needed)?;
         (found.mass.abs() > LEAST_MASS * mass).then(|| (log.name.clone(), found))
     };
     let found: Vec<(String, Payload)> = logs.iter().zip(needed).filter_map(of_log).collect();
-    let signs = [1.0, -1.0].map(|sign| {
-        let own = found.iter().filter(|(_, payload)| payload.mass * sign > 0.0);
-        let own: Vec<&(String, Payload)> = own.collect();
-        (!own.is_empty()).then(|| payload_words(&own, logs.len()))
-    });
-    signs.into_iter().flatten().collect()
+    let (heavier, lighter): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|(_, payload)| payload.mass > 0.0);
+    payload_words([&heavier, &lighter], logs.len())
 }
 
-/// Says which recordings, of all, have a payload of which mass, and what it explains.
-fn payload_words(found: &[&(String, Payload)], of: usize) -> String {
-    let mean = |value: &dyn Fn(&Payload) -> f64| {
-        found.iter().map(|(_, payload)| value(payload)).sum::<f64>() / found.len() as f64
+/// Says which recordings, of all, have more at the last link than the robot, or than those that have
+/// less, and what that explains.
+fn payload_words([heavier, lighter]: [&[(String, Payload)]; 2], of: usize) -> Option<String> {
+    let mean = |found: &[(String, Payload)], value: &dyn Fn(&Payload) -> f64| {
+        found.iter().map(|(_, payload)| value(payload)).sum::<f64>() / found.len().max(1) as f64
     };
-    let (mass, explained) = (mean(&|payload| payload.mass), mean(&|payload| payload.explained));
-    let names: Vec<&str> = found.iter().take(NAMED).map(|(name, _)| name.as_str()).collect();
-    let more = match found.len() - names.len() {
+    let mass = |found| mean(found, &|payload| payload.mass);
+    let named = if heavier.is_empty() { lighter } else { heavier };
+    let all = [heavier, lighter].concat();
+    let names: Vec<&str> = named.iter().take(NAMED).map(|(name, _)| name.as_str()).collect();
+    let more = match named.len() - names.len() {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    let less = if mass > 0.0 { "more" } else { "less" };
-    format!(
-        "in {}{more} ({} of {}) the last link has {:.1} kg {less} than the robot's: that explains {} \
-         of what is unexplained there; make a model for each payload, or give the tool in the \
-         description",
-        names.join(", "),
-        found.len(),
-        counted(of, "recording"),
-        mass.abs(),
-        percent(explained)
-    )
+    let (kg, than) = match (heavier.is_empty(), lighter.is_empty()) {
+        (true, _) => (-mass(lighter), "less than the robot's"),
+        (_, true) => (mass(heavier), "more than the robot's"),
+        _ => (mass(heavier) - mass(lighter), "more than in the others"),
+    };
+    (!all.is_empty()).then(|| {
+        format!(
+            "in {}{more} ({} of {}) the last link has {kg:.1} kg {than}: that explains {} of what \
+             is unexplained there; make a model for each payload, or give the tool in the \
+             description",
+            names.join(", "),
+            named.len(),
+            counted(of, "recording"),
+            percent(mean(&all, &|payload| payload.explained))
+        )
+    })
 }
 
 /// Returns filtered torques beside what the robot needs for their motions: what was taken off them

@@ -1,5 +1,6 @@
 //! Ten logs that are wrong: `model` refuses each, or names the cause in the first line.
 
+use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 use std::path::Path;
@@ -340,4 +341,39 @@ fn recordings_of_two_arms_that_are_made_wrong_are_not_accepted() {
     // The description of another arm with as many joints.
     let other = ("it may be of another robot", 3, &(|_: &mut [f64], _, _| ()) as Change);
     names_the_cause("lwa4p", (&data.join("ur10e/excitation"), SHORT), other);
+}
+
+#[test]
+fn torques_that_come_late_are_named_with_their_lag() {
+    let lab = lab();
+    for (samples, words) in [(4, "40 ms later"), (8, "80 ms later")] {
+        let past = RefCell::new(Vec::new());
+        write(&lab, &|row, k, _| {
+            let mut past = past.borrow_mut();
+            past.truncate(k);
+            past.push([row[5] + 1.5 * row[3].signum(), row[6] + row[4].signum()]);
+            row[5..].copy_from_slice(&past[k.saturating_sub(samples)]);
+        });
+        let run = lab.run(&format!("{MODEL} --json"));
+        let findings = run.json()["findings"].to_string();
+        assert!(findings.contains(words), "{words}: {findings}");
+    }
+}
+
+#[test]
+fn a_check_names_the_payload_by_which_logs_differ() {
+    let lab = lab();
+    write(&lab, &|_, _, _| ());
+    lab.run(MODEL).exits(0);
+    let loaded = arm(1.0).replace("mass = 2\n", "mass = 2.8\n");
+    let [loaded, robot] = [loaded, arm(1.0)].map(|text| Robot::from_toml(&text, "arm").unwrap());
+    write(&lab, &|row, _, _| {
+        let q = &row[1..3];
+        let added = loaded.gravity_torque(q) - robot.gravity_torque(q);
+        row[5..].iter_mut().zip(&added).for_each(|(torque, added)| *torque += added);
+    });
+    let run = lab.run("check --model made/model.json --data logs");
+    assert_eq!(run.code, 1, "{run:#?}");
+    assert!(run.stdout.contains("kg more than the robot's"), "{run:#?}");
+    assert!(!run.stdout.contains("make the model again"), "{run:#?}");
 }

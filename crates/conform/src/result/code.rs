@@ -49,7 +49,7 @@ reachtube_finding::codes! {
         FrictionRange = "friction-range",
         /// Viscous friction falls with speed.
         FallingFriction = "falling-friction",
-        /// The most likely cause of other warnings.
+        /// The most likely cause of other warnings, or of rows outside the sets.
         Cause = "cause",
         /// The fitted model needs larger sets for motions that it was not fitted to.
         Overfitted = "overfitted",
