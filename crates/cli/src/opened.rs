@@ -56,7 +56,8 @@ impl OpenedCheck {
                  --torque {given}"
             )));
         }
-        let job = check_job(model, setup, &args.data, args.max_gap)?
+        model.preparation.as_ref().map_or(Ok(()), |_| args.refuse_gap_of_logs())?;
+        let job = check_job(model, setup, &args.data)?
             .suites(&args.suites)
             .notion(notion)
             .until(args.until)

@@ -105,7 +105,7 @@ mod tests {
             motion: None,
             order: None,
             notes: vec![],
-            moved: vec![],
+            moved: vec![], flaws: vec![],
             run,
         }
     }

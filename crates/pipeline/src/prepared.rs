@@ -9,26 +9,22 @@ use reachtube_robot::Robot;
 use crate::error::{Error, Result};
 use crate::planned::Planned;
 use crate::robot::prepare_for;
-use crate::sorted::{WARMTH, origins_of, read_logs, unknown_warmth};
+use crate::sorted::{WARMTH, read_logs, unknown_warmth};
+use crate::stretches::{Use, in_stretches};
 use crate::windows::{Prepared, windows_of};
 
 /// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
 /// CSV file (a planned motion), or for a model that `model` made, logs, which are prepared as its
-/// own were; `max_gap` is the longest time between two of their samples, s, if it is another.
+/// own were.
 ///
 /// # Errors
 ///
 /// Recordings that cannot be opened, or logs as for [`prepared`].
-pub fn check_job(
-    model: Model,
-    setup: Setup,
-    data: &Path,
-    max_gap: Option<f64>,
-) -> Result<CheckJob> {
+pub fn check_job(model: Model, setup: Setup, data: &Path) -> Result<CheckJob> {
     let windows = model
         .preparation
         .as_ref()
-        .map(|known| prepared(&model, known, &[data.to_path_buf()], max_gap))
+        .map(|known| prepared(&model, known, &[data.to_path_buf()]))
         .transpose()?;
     Ok(match windows {
         Some(windows) => CheckJob::new(model, setup, windows),
@@ -40,8 +36,8 @@ pub fn check_job(
     })
 }
 
-/// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`;
-/// `max_gap` is the longest time between two of their samples, s, if it is another.
+/// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`.
+/// The notes of the windows say what was left out.
 ///
 /// # Errors
 ///
@@ -51,14 +47,12 @@ pub fn prepared(
     model: &Model,
     preparation: &Preparation,
     paths: &[PathBuf],
-    max_gap: Option<f64>,
 ) -> Result<MemoryRuns> {
     let Preparation { torque, gains, cut_off, window, columns, log, .. } = preparation;
     let robot = Robot::from_description(&model.robot())?;
     let settings = PrepareSettings {
         gains: gains.clone(),
         torque: Some(*torque),
-        max_gap: max_gap.or(preparation.max_gap),
         columns: columns.clone(),
         log: log.clone(),
         ..PrepareSettings::default()
@@ -72,10 +66,12 @@ pub fn prepared(
             return Err(Error::Choice { key: "data", value, needed: WARMTH });
         }
     }
-    let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    let (from_start, origins) = (window.is_none(), &origins_of(&raw));
-    let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
+    let what = Use { cut_off: cut_off.unwrap_or(f64::INFINITY), from_start: window.is_none() };
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
+    let (raw, origins, notes) = in_stretches(&raw, what)?;
+    let logs = prepare_for(&raw, &robot, *torque, &settings, what.cut_off)?;
+    let (from_start, origins) = (what.from_start, &origins);
+    let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let prepared =
         Prepared { logs: &logs, origins, from_start, divides: false, simulated, shortest: 0.0 };
     let horizon = match (window, model.usefulness.as_ref()) {
@@ -83,5 +79,5 @@ pub fn prepared(
         (None, Some(said)) => said.horizon.min(longest),
         (None, None) => longest,
     };
-    Ok(prepared.cut(horizon, usize::MAX)?.named(windows_of(paths)))
+    Ok(prepared.cut(horizon, usize::MAX)?.named(windows_of(paths)).noted(notes))
 }

@@ -15,6 +15,9 @@ const LEFT_OUT: &str = "factor for a motion left out";
 /// Number of horizons beyond the chosen one whose sets are listed.
 const BEYOND: usize = 2;
 
+/// What is mended in recordings.
+const MENDED: [Code; 2] = [Code::TurnsMoved, Code::MissingSamples];
+
 impl Built {
     /// Returns the verdict as one sentence: whether the sets were proved, and up to which time they
     /// are useful.
@@ -57,7 +60,7 @@ impl Built {
                 .insert(0, format!("not acceptable: {}", finding.written_for(front_end)));
         }
         // What was mended in the recordings comes before what was made of them.
-        summary.verdict.splice(0..0, self.moved());
+        summary.verdict.splice(0..0, MENDED.iter().filter_map(|code| self.mended(*code)));
         // A contradiction is the cause, and no other is sought.
         if !self.is_useful() && self.contradiction().is_none() {
             let findings = self.answer.model.findings().into_iter();
@@ -69,7 +72,7 @@ impl Built {
             without.add_to(&mut summary.table);
         }
         let is_said = |other: &&Finding| {
-            Some(*other) == self.contradiction() || other.code == Code::TurnsMoved
+            Some(*other) == self.contradiction() || MENDED.iter().any(|code| other.code == *code)
         };
         let warnings = self.findings.iter().filter(|other| !is_said(other));
         summary.warnings = warnings.map(|finding| finding.written_for(front_end)).collect();
@@ -92,12 +95,12 @@ impl Built {
         summary
     }
 
-    /// Returns which recordings were moved by whole turns: the first of them, with the number of
-    /// the others.
-    fn moved(&self) -> Option<String> {
-        let mut moved = self.findings.iter().filter(|other| other.code == Code::TurnsMoved);
-        let first = moved.next()?;
-        let more = match moved.count() {
+    /// Returns in which recordings the same was mended: the first of them, with the number of the
+    /// others.
+    fn mended(&self, code: Code) -> Option<String> {
+        let mut mended = self.findings.iter().filter(|other| other.code == code);
+        let first = mended.next()?;
+        let more = match mended.count() {
             0 => String::new(),
             count => format!(" ({count} more likewise)"),
         };
