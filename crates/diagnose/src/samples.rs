@@ -58,10 +58,10 @@ pub fn wrong_samples(run: &Run) -> Vec<WrongSamples> {
         return Vec::new();
     }
     let mut found: Vec<WrongSamples> = zeros(run).into_iter().collect();
-    if found.is_empty() {
-        found.extend((0..run.joints).filter_map(|joint| jump(run, joint)));
-        found.extend((0..run.joints).filter_map(|joint| huge_torque(run, joint)));
-    }
+    // Positions jump to zeros and back.
+    let zeros: Vec<Range<usize>> = found.iter().flat_map(|found| found.rows.clone()).collect();
+    found.extend((0..run.joints).filter_map(|joint| jump(run, joint, &zeros)));
+    found.extend((0..run.joints).filter_map(|joint| huge_torque(run, joint)));
     found.extend(repeated(run));
     found
 }
@@ -96,8 +96,8 @@ fn usual_step(run: &Run) -> f64 {
 }
 
 /// Returns the first jump of a joint's position that its velocity does not explain, and the number
-/// of jumps.
-fn jump(run: &Run, joint: usize) -> Option<WrongSamples> {
+/// of jumps. Jumps to and from rows of `zeros` are none.
+fn jump(run: &Run, joint: usize, zeros: &[Range<usize>]) -> Option<WrongSamples> {
     let usual = usual_step(run);
     let step = |k: usize| run.times[k] - run.times[k - 1];
     let moved = |k: usize| run.q(k)[joint] - run.q(k - 1)[joint];
@@ -109,14 +109,16 @@ fn jump(run: &Run, joint: usize) -> Option<WrongSamples> {
     let speed = |k: usize| 0.5 * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
     let beyond = |k: usize| moved(k) - step(k) * speed(k);
     let is_jump = |k: &usize| step(*k) < ONE_STEP * usual && beyond(*k).abs() > limit;
-    let jumps: Vec<usize> = (1..run.len()).filter(is_jump).collect();
+    let is_of_zeros = |k: &usize| zeros.iter().any(|rows| (rows.start..=rows.end).contains(k));
+    let jumps: Vec<usize> = (1..run.len()).filter(|k| is_jump(k) && !is_of_zeros(k)).collect();
     let first = *jumps.first()?;
     let is_back = |a: usize, b: usize| {
         b - a <= AWAY && (beyond(a) + beyond(b)).abs() < RETURN * beyond(a).abs()
     };
     // While samples repeat, the joint moves on as fast as before and after.
     let held = |k: usize| {
-        let count = (1..k).take_while(|back| run.state(k - back) == run.state(k - back - 1)).count();
+        let count =
+            (1..k).take_while(|back| run.state(k - back) == run.state(k - back - 1)).count();
         let explained = speed(k) * (run.times[k] - run.times[k - 1 - count]);
         let is_held = (moved(k) - explained).abs() < HELD * moved(k).abs();
         (count > 0 && is_held).then_some(k - count..k)
@@ -137,8 +139,10 @@ fn jump(run: &Run, joint: usize) -> Option<WrongSamples> {
     // What remains of the jumps is of unknown extent.
     let (places, is_whole) = (rows.len(), at == jumps.len());
     let more = if is_whole { places - 1 } else { jumps.len() - 1 };
-    if more > 0 {
-        how += &format!(", and {more} times more");
+    match more {
+        0 => (),
+        1 => how += ", and once more",
+        _ => how += &format!(", and {more} times more"),
     }
     let text = format!(
         "jumps by {:.3}{how}, where its velocity explains {:.3}",
@@ -260,6 +264,58 @@ mod tests {
             }
         })[0];
         assert!(torque.sample == Some(7) && torque.text.contains("-4000.0"), "{torque:?}");
+    }
+
+    #[test]
+    fn a_few_wrong_samples_have_their_rows_and_a_step_has_none() {
+        let rows = |change: &dyn Fn(usize, &mut [f64])| found(change).remove(0).rows;
+        let spikes = |k: usize, row: &mut [f64]| {
+            row[1] +=
+                if k == 100 { 0.4 } else { 0.0 } - if (200..203).contains(&k) { 0.7 } else { 0.0 };
+        };
+        assert_eq!(rows(&spikes), [100..101, 200..203]);
+        let text = &found(spikes)[0].text;
+        assert!(text.contains("in one sample and back, and once more"), "{text}");
+        assert_eq!(rows(&|k, row| row[0] += if k < 300 { 0.0 } else { 0.5 }), []);
+        let zeros = |k: usize, row: &mut [f64]| {
+            if k == 0 || (40..42).contains(&k) {
+                row.fill(0.0);
+            }
+        };
+        assert_eq!(rows(&zeros), [0..1, 40..42]);
+        let both = found(|k, row| {
+            spikes(k, row);
+            zeros(k, row);
+        });
+        assert_eq!((both.len(), &both[1].rows[..]), (2, &[100..101, 200..203][..]));
+        let torque = |k: usize, row: &mut [f64]| row[4] *= if k % 200 == 9 { 1e3 } else { 1.0 };
+        assert_eq!(rows(&torque), [9..10, 209..210, 409..410]);
+        // A spike shows in velocities that were derived from the positions.
+        let derived = |k: usize, row: &mut [f64]| match k {
+            99 => row[2] += 25.0,
+            100 => row[0] += 0.5,
+            101 => row[2] -= 25.0,
+            _ => (),
+        };
+        assert_eq!(rows(&derived), [100..101]);
+    }
+
+    #[test]
+    fn samples_that_stand_still_in_motion_have_their_rows() {
+        let still = |k: usize, row: &mut [f64]| {
+            if (160..180).contains(&k) {
+                let t = 1.59f64;
+                row[..4].copy_from_slice(&[
+                    1.0 + t.sin(),
+                    (2.0 * t).sin(),
+                    t.cos(),
+                    2.0 * (2.0 * t).cos(),
+                ]);
+            }
+        };
+        let found = &found(still)[0];
+        assert_eq!((found.joint, &found.rows[..]), (Some(1), &[160..180][..]));
+        assert!(found.text.contains("after 20 samples that repeat the one before"), "{found:?}");
     }
 
     #[test]

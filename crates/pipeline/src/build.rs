@@ -1,4 +1,5 @@
 use std::path::Path;
+use std::sync::Arc;
 
 use reachtube_arm::Equations;
 use reachtube_conform::{Answer, FitSettings, Group, Progress};
@@ -84,6 +85,8 @@ pub fn build(
     settings.gain_of_each_joint(robot.joint_count())?;
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let journal = Steps::open(journal, digest(robot, torque, given, &sorted.digest));
+    let moving: Vec<Arc<RawLog>> =
+        sorted.motions.iter().map(|recording| Arc::clone(&recording.log)).collect();
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     refuse_unknown_warmth(given, &split)?;
     chooser.choose_held_out(&split);
@@ -94,8 +97,9 @@ pub fn build(
     let choices = first_choices(&mut chooser, &journal, robot, torque, &raw, &settings);
     let (first, cut_off) = choices?;
     let what = Use { cut_off: if from_start { f64::INFINITY } else { cut_off }, from_start };
-    check_used(split.recordings().map(|recording| &*recording.log), what)?;
-    let (left_out, split) = (left_out(sorted.all.iter().map(|log| &**log), what), split.in_stretches(what));
+    check_used(moving.iter().map(|log| &**log), what)?;
+    let (left_out, split) =
+        (left_out(sorted.all.iter().map(|log| &**log), what), split.in_stretches(what));
 
     // The robot.
     let evidence = Evidence {

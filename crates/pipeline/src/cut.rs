@@ -11,7 +11,7 @@ use reachtube_recordings::{
 use reachtube_robot::Robot;
 
 use crate::error::Result;
-use crate::sorted::{read_logs, without_suite_note};
+use crate::sorted::{origins_of, read_logs, without_suite_note};
 use crate::stretches::{Use, in_stretches};
 use crate::windows::{Origin, Prepared, windows_of};
 
@@ -51,17 +51,18 @@ impl Cut {
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
         notes.extend(without_suite_note(&raw));
+        let whole = origins_of(&raw);
         let cut_off = match torque {
             Torque::Compensated => None,
             _ => {
                 let what = Use { cut_off: f64::INFINITY, from_start: false };
-                let (raw, origins, _) = in_stretches(&raw, what)?;
+                let (raw, origins, _) = in_stretches(&raw, &whole, what)?;
                 Some(rounded(cut_off(&without(&raw, &origins, calibrate), &settings)?))
             }
         };
         let of = raw.len();
         let what = Use { cut_off: cut_off.unwrap_or(f64::INFINITY), from_start: false };
-        let (raw, origins, left_out) = in_stretches(&raw, what)?;
+        let (raw, origins, left_out) = in_stretches(&raw, &whole, what)?;
         let origins = &origins;
         notes.extend(left_out);
         let logs = match cut_off {

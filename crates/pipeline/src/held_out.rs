@@ -86,11 +86,6 @@ impl Split {
         Ok(Self { kept, held_out, names, reason })
     }
 
-    /// Returns all recordings.
-    pub(crate) fn recordings(&self) -> impl Iterator<Item = &Recording> {
-        self.kept.iter().chain(&self.held_out)
-    }
-
     /// Returns the same motions, with each recording as its stretches.
     pub(crate) fn in_stretches(&self, what: Use) -> Self {
         let of = |recording: &Recording| {
@@ -116,7 +111,7 @@ impl Split {
             let sha256 = log.run.sha256.clone();
             (log.name.clone(), Origin { motion: motion.clone(), sha256, at_rest: false })
         };
-        self.recordings().map(origin).collect()
+        self.kept.iter().chain(&self.held_out).map(origin).collect()
     }
 
     /// Holds out the end of each recording of a single motion.
@@ -198,7 +193,8 @@ mod tests {
                 order: None,
                 run,
                 notes: vec![],
-                moved: vec![], flaws: vec![],
+                moved: vec![],
+                flaws: vec![],
             };
             Recording { log: Arc::new(log), motion: name }
         };

@@ -105,7 +105,8 @@ mod tests {
             motion: None,
             order: None,
             notes: vec![],
-            moved: vec![], flaws: vec![],
+            moved: vec![],
+            flaws: vec![],
             run,
         }
     }

@@ -123,7 +123,8 @@ mod tests {
             motion: None,
             order: None,
             notes: vec![],
-            moved: vec![], flaws: vec![],
+            moved: vec![],
+            flaws: vec![],
             run,
         };
         (robot, raw)

@@ -9,7 +9,7 @@ use reachtube_robot::Robot;
 use crate::error::{Error, Result};
 use crate::planned::Planned;
 use crate::robot::prepare_for;
-use crate::sorted::{WARMTH, read_logs, unknown_warmth};
+use crate::sorted::{WARMTH, origins_of, read_logs, unknown_warmth};
 use crate::stretches::{Use, in_stretches};
 use crate::windows::{Prepared, windows_of};
 
@@ -43,11 +43,7 @@ pub fn check_job(model: Model, setup: Setup, data: &Path) -> Result<CheckJob> {
 ///
 /// Logs that cannot be read or prepared, or that lack the warmth of the robot although the model
 /// needs it, and [`Error::NoWindow`](crate::Error::NoWindow) if none is as long as a window.
-pub fn prepared(
-    model: &Model,
-    preparation: &Preparation,
-    paths: &[PathBuf],
-) -> Result<MemoryRuns> {
+pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> Result<MemoryRuns> {
     let Preparation { torque, gains, cut_off, window, columns, log, .. } = preparation;
     let robot = Robot::from_description(&model.robot())?;
     let settings = PrepareSettings {
@@ -68,7 +64,7 @@ pub fn prepared(
     }
     let what = Use { cut_off: cut_off.unwrap_or(f64::INFINITY), from_start: window.is_none() };
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-    let (raw, origins, notes) = in_stretches(&raw, what)?;
+    let (raw, origins, notes) = in_stretches(&raw, &origins_of(&raw), what)?;
     let logs = prepare_for(&raw, &robot, *torque, &settings, what.cut_off)?;
     let (from_start, origins) = (what.from_start, &origins);
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);

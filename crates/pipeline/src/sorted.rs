@@ -120,8 +120,9 @@ fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
     (kept, finding)
 }
 
-/// Reads recordings, and looks for samples that are missing or wrong. Each has the order of its index, and the motion, or else the suite, if the log
-/// names no motion itself. Files of one name have the names of their folders too.
+/// Reads recordings, and looks for samples that are missing or wrong. Each recording has the order
+/// of its index, and the motion, or else the suite, if the log names no motion itself. Files of one
+/// name have the names of their folders too.
 ///
 /// # Errors
 ///

@@ -227,7 +227,9 @@ impl Run {
         let first = samples.clone().next().expect("a run has a sample");
         let rows = |values: &[f64], width: usize| match values {
             [] => vec![],
-            _ => samples.clone().flat_map(|k| &values[width * k..width * (k + 1)]).copied().collect(),
+            _ => {
+                samples.clone().flat_map(|k| &values[width * k..width * (k + 1)]).copied().collect()
+            }
         };
         Self {
             joints: self.joints,

@@ -321,7 +321,8 @@ mod tests {
                     order: None,
                     run: run.clone(),
                     notes: vec![],
-                    moved: vec![], flaws: vec![],
+                    moved: vec![],
+                    flaws: vec![],
                 };
                 let log = &prepare(&[raw], &settings, 5.0, Some(&robot)).unwrap().logs[0];
                 let preparation = Preparation { torque, gains, ..preparation() };

@@ -37,7 +37,7 @@ pub use log::PreparedLog;
 pub use noise::noise_left;
 pub use prepared::{Prepared, prepare, shortest, unfiltered};
 pub use raw_log::{Flaw, FlawOutcome, RawLog};
-pub use resample::median_step;
 pub use read::read;
+pub use resample::median_step;
 pub use settings::{PrepareSettings, VelocitySource};
 pub use windows::{Window, Windows, check_window, windows};

@@ -213,7 +213,8 @@ mod tests {
             order: None,
             run,
             notes: vec![],
-            moved: vec![], flaws: vec![],
+            moved: vec![],
+            flaws: vec![],
         }
     }
 

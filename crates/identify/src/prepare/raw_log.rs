@@ -89,7 +89,16 @@ mod tests {
             let (states, torques) = (vec![0.0; 2 * times.len()], vec![0.0; times.len()]);
             let run = Run::new(1, times, states, torques).unwrap();
             let (name, file) = ("a".to_string(), "a.csv".into());
-            RawLog { name, file, motion: None, order: None, run, notes: vec![], moved: vec![], flaws: vec![] }
+            RawLog {
+                name,
+                file,
+                motion: None,
+                order: None,
+                run,
+                notes: vec![],
+                moved: vec![],
+                flaws: vec![],
+            }
         };
         let gap = log(vec![0.0, 0.01, 0.02, 0.52, 0.53, 0.54]);
         let note = gap.filled_gaps(Some(1.0)).unwrap();
