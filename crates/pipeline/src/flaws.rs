@@ -1,5 +1,7 @@
 //! Samples of recordings that are missing or wrong.
 
+use std::collections::BTreeSet;
+
 use reachtube_diagnose::{WrongSamples, wrong_samples};
 use reachtube_identify::prepare::{Flaw, FlawOutcome, RawLog, median_step};
 use reachtube_recordings::GapLimit;
@@ -12,7 +14,7 @@ const LARGEST_MISSING: f64 = 0.1;
 
 /// The part of a recording's samples that is left out if it is wrong; of more, something else is
 /// wrong.
-const FEW: f64 = 0.01;
+const FEW: f64 = 0.03;
 
 /// Samples to both sides of what is missing or wrong that are left out with it: velocities that are
 /// derived from positions need the samples beside them.
@@ -28,8 +30,9 @@ pub(crate) fn find_flaws(log: &mut RawLog, robot: &Robot) -> Result<()> {
     let longest = GapLimit::Usual.longest_step(steps.clone());
     let usual = median_step(&log.run.times).unwrap_or_default();
     let wrong = wrong_samples(&log.run);
-    let rows = || wrong.iter().flat_map(|wrong| &wrong.rows);
-    let is_few = rows().map(|rows| rows.len()).sum::<usize>() as f64 <= FEW * log.run.len() as f64;
+    let rows: BTreeSet<usize> =
+        wrong.iter().flat_map(|wrong| wrong.rows.iter().cloned().flatten()).collect();
+    let is_few = rows.len() as f64 <= FEW * log.run.len() as f64;
     let mut kept = vec![true; log.run.len()];
     let leave_out = |kept: &mut [bool], from: usize, until: usize| {
         kept[from.saturating_sub(BESIDE)..(until + BESIDE).min(log.run.len())].fill(false);

@@ -101,10 +101,22 @@ fn a_log_that_is_mostly_lost_is_refused_and_many_wrong_samples_contradict_the_ro
     // One sample in a second: no stretch between is long enough for the low-pass.
     let text = lost(&|k| k % 100 == 99);
     assert!(text.contains("10 ms of samples are missing before 1.000 s (the first of 9"), "{text}");
-    write(&lab, &|row, k, number| row[1] += if number == 1 && k % 60 == 7 { 0.5 } else { 0.0 });
-    let run = lab.run(MODEL).exits(3);
-    let first = run.stdout.lines().take(4).collect::<Vec<_>>().join(" ");
-    assert!(first.starts_with("not acceptable: log_1.csv:9: shoulder at 0.070 s jumps"), "{first}");
+    // A joint that counts from elsewhere, and zeros in many rows.
+    let refused = |change: &dyn Fn(&mut Row, usize, usize)| {
+        write(&lab, change);
+        let text = lab.run(MODEL).exits(3).stdout;
+        text.lines().take(4).collect::<Vec<_>>().join(" ")
+    };
+    let text = refused(&|row, k, number| row[1] += if number == 1 && k > 400 { 0.5 } else { 0.0 });
+    let words = "not acceptable: log_1.csv:403: shoulder at 4.010 s jumps by 0.5";
+    assert!(text.starts_with(words), "{text}");
+    let text = refused(&|row, k, number| {
+        if number == 1 && k % 20 == 7 {
+            row[1..].fill(0.0);
+        }
+    });
+    let words = "not acceptable: log_1.csv:9: the sample at 0.070 s is a row of zeros";
+    assert!(text.starts_with(words), "{text}");
 }
 
 #[test]
