@@ -243,7 +243,6 @@ def model(
     gains: npt.ArrayLike | None = None,
     fit: Sequence[Group] | None = None,
     pull: float | None = None,
-    max_gap: float | None = None,
     columns: Mapping[str, str | int] | None = None,
     topic: str | Sequence[str] | None = None,
     joints: Sequence[str] | None = None,
@@ -283,9 +282,6 @@ def model(
         takes minutes. By default as in ``settings``, or none.
     pull
         The weight of the pull of a fit, as for `conform`.
-    max_gap
-        Longest time between two samples, above 0 s; the torque is held over it. By default 1.9
-        times the usual sample time, and 10 times if sample times jitter.
     columns
         Columns of CSV files with ambiguous names, as ``{"q": "pos_{}", "first": 0}``; the keys
         are ``q``, ``qd``, ``tau``, ``current``, ``time``, ``first``, ``time_unit`` and ``angle``.
@@ -324,7 +320,7 @@ def model(
     >>> print(built)  # doctest: +SKIP
     >>> built.save("arm")  # doctest: +SKIP
     """
-    given = _numbers(horizon=horizon, max_gap=max_gap, pull=pull, gains=gains)
+    given = _numbers(horizon=horizon, pull=pull, gains=gains)
     if torque is not None:
         given["torque"] = torque
     if held_out is not None:
@@ -358,15 +354,13 @@ def model(
 def _numbers(
     *,
     horizon: float | None,
-    max_gap: float | None,
     pull: float | None,
     gains: npt.ArrayLike | None,
 ) -> dict[str, Any]:
     """Return the numbers that are given, by the keys of a file of choices."""
     given: dict[str, Any] = {}
-    for name, value in {"horizon": horizon, "max_gap": max_gap}.items():
-        if value is not None:
-            given[name.replace("_", "-")] = above_zero(name, value)
+    if horizon is not None:
+        given["horizon"] = above_zero("horizon", horizon)
     if pull is not None:
         if not 0 <= real("pull", pull) <= 1:
             raise SettingError(f"pull is {pull}; give a weight from 0 to 1")

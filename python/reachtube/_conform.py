@@ -19,7 +19,7 @@ from ._model import Model, text_of
 from ._progress import Progress, shown
 from ._recordings import source
 from ._robot import Robot
-from ._settings import Data, Group, Notion, Torque, among, of_conformance
+from ._settings import Data, Group, Notion, Torque, among, of_conformance, refuse_gap_of_logs
 from .errors import ReachtubeWarning, SettingError
 
 log = logging.getLogger("reachtube")
@@ -178,12 +178,12 @@ def _cut(
     length = above_zero("horizon", horizon)
     if until is not None:
         raise SettingError("horizon and until exclude each other: windows end at the horizon")
+    refuse_gap_of_logs(max_gap)
     return _reachtube.cut(
         robot._native if isinstance(robot, Robot) else None,
         robot._native if isinstance(robot, Abstraction) else None,
         torque,
         length,
-        None if max_gap is None else above_zero("max_gap", max_gap),
         names(calibrate),
         *native_of_logs(data),
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _html, _reachtube
-from ._arrays import Array, above_zero, array_of, names
+from ._arrays import Array, array_of, names
 from ._box import Box
 from ._bytes import checked
 from ._check import Check
@@ -20,7 +20,7 @@ from ._progress import Progress, shown
 from ._record import Record
 from ._recordings import source
 from ._robot import Robot
-from ._settings import Data, Notion, differing
+from ._settings import Data, Notion, differing, refuse_gap_of_logs
 from .errors import ModelFileError, ReachtubeError, SettingError
 
 
@@ -348,6 +348,6 @@ def source_for(model: Model, data: Logs, max_gap: float | None = None) -> _reach
     Logs for a model that `model` made are prepared as its own were.
     """
     if "preparation" in model._content:
-        gap = None if max_gap is None else above_zero("max_gap", max_gap)
-        return _reachtube.prepared(model._text, gap, *native_of_logs(data))
+        refuse_gap_of_logs(max_gap)
+        return _reachtube.prepared(model._text, *native_of_logs(data))
     return source(data)  # type: ignore[arg-type]

@@ -229,14 +229,11 @@ def cut(
     abstraction: Abstraction | None,
     torque: str,
     horizon: float,
-    max_gap: float | None,
     calibrate: list[str],
     paths: list[str],
     runs: Source | None,
 ) -> tuple[Source, str, list[str]]: ...
-def prepared(
-    model: str, max_gap: float | None, paths: list[str], runs: Source | None
-) -> Source: ...
+def prepared(model: str, paths: list[str], runs: Source | None) -> Source: ...
 def prepare(
     robot: Robot,
     paths: list[str],

@@ -36,6 +36,15 @@ def _radii(name: str, values: npt.ArrayLike, joints: int) -> list[float]:
     return [float(value) for value in given]
 
 
+def refuse_gap_of_logs(max_gap: float | None) -> None:
+    """Raise an error if a limit of gaps is given for logs, of which none is filled."""
+    if max_gap is not None:
+        raise SettingError(
+            "max_gap is for runs whose inputs are held over a gap: no window of a log crosses one; "
+            "leave it out"
+        )
+
+
 def _limits(until: float | None, max_gap: float | None) -> dict[str, float]:
     """Return the limits of time that are given."""
     limits = {"until": until, "max_gap": max_gap}

@@ -110,11 +110,10 @@ fn kept(built: &Built) -> Result<String> {
 
 /// Reads logs and does to them what was done to the recordings of a model, whose text is `model`.
 #[pyfunction]
-#[pyo3(signature = (model, max_gap, paths, runs))]
+#[pyo3(signature = (model, paths, runs))]
 pub(crate) fn prepared(
     py: Python<'_>,
     model: String,
-    max_gap: Option<f64>,
     paths: Vec<PathBuf>,
     runs: Option<PyRef<'_, NativeSource>>,
 ) -> PyResult<NativeSource> {
@@ -126,7 +125,7 @@ pub(crate) fn prepared(
         let preparation = preparation
             .ok_or_else(|| Failure::ModelFile("the model takes recordings as they are".into()))?;
         let logs = LogsOnDisk::new(paths, runs.as_ref())?;
-        let windows = reachtube::pipeline::prepared(&model, preparation, &logs.paths, max_gap);
+        let windows = reachtube::pipeline::prepared(&model, preparation, &logs.paths);
         windows.map_err(|error| logs.named(error))
     })?;
     Ok(NativeSource::in_memory(windows))
@@ -135,7 +134,7 @@ pub(crate) fn prepared(
 /// Cuts logs into windows for a conformance. Returns them, what was done to the logs as JSON, and
 /// notes.
 #[pyfunction]
-#[pyo3(signature = (robot, abstraction, torque, horizon, max_gap, calibrate, paths, runs))]
+#[pyo3(signature = (robot, abstraction, torque, horizon, calibrate, paths, runs))]
 #[allow(clippy::too_many_arguments)]
 pub(crate) fn cut(
     py: Python<'_>,
@@ -143,7 +142,6 @@ pub(crate) fn cut(
     abstraction: Option<PyRef<'_, NativeAbstraction>>,
     torque: String,
     horizon: f64,
-    max_gap: Option<f64>,
     calibrate: Vec<String>,
     paths: Vec<PathBuf>,
     runs: Option<PyRef<'_, NativeSource>>,
@@ -155,7 +153,7 @@ pub(crate) fn cut(
             .map_err(|error| Failure::Setting(format!("torque: {error}")))?;
         let logs = LogsOnDisk::new(paths, runs.as_ref())?;
         let robot = basis.robot()?.into_owned();
-        let cut = Cut::new(&robot, torque, horizon, max_gap, &calibrate, &logs.paths)
+        let cut = Cut::new(&robot, torque, horizon, &calibrate, &logs.paths)
             .map_err(|error| logs.named(error))?;
         let notes: Vec<String> = cut.notes.iter().map(|note| logs.renamed(note)).collect();
         Ok((cut, notes))

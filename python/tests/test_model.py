@@ -140,7 +140,7 @@ def gapped(run: rt.Run) -> rt.Run:
 
 
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
-def test_a_longer_gap_is_accepted_on_request(
+def test_no_window_crosses_a_gap(
     built: rt.BuiltModel, arm: rt.Robot, logs: list[rt.Run], tmp_path: Path
 ) -> None:
     brakes = {"torque": [[45, 60]] * 6, "delay": [0.01, 0.03]}
@@ -152,15 +152,13 @@ def test_a_longer_gap_is_accepted_on_request(
         partial(rt.stop, built.model, run, brakes, every=20),
     ]
     for job in jobs:
-        with pytest.raises(rt.DefectsError, match="gapped:302: .* of 0.084.* max_gap=SECONDS"):
-            job()
-        with pytest.raises(rt.SettingError, match="max_gap is -1.0 s"):
-            job(max_gap=-1)
-        job(max_gap=0.1)
-    with pytest.raises(rt.DefectsError, match="a gap of 0.084"):
-        rt.model(arm, run, torque="motor", horizon=9.0)
+        with pytest.raises(rt.SettingError, match="no window of a log crosses one"):
+            job(max_gap=0.1)
+        job()
+    crossed = rt.check(built.model, logs[0])
+    assert len(rt.check(built.model, run).suites) < len(crossed.suites)
     with pytest.raises(rt.ReachtubeError, match="as long as the horizon of 9 s"):
-        rt.model(arm, [*logs, run], torque="motor", horizon=9.0, max_gap=0.1)
+        rt.model(arm, [*logs, run], torque="motor", horizon=9.0)
 
 
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
@@ -168,18 +166,17 @@ def test_a_fit_is_what_its_arguments_say(
     arm: rt.Robot, logs: list[rt.Run], choices: Path, tmp_path: Path
 ) -> None:
     found = rt.model(
-        arm, logs, "motor", horizon=0.05, settings=choices, fit=["viscous"], pull=0.02, max_gap=0.1
+        arm, logs, "motor", horizon=0.05, settings=choices, fit=["viscous"], pull=0.02
     )
     assert {choice.key: choice.value for choice in found.choices}["fit"] == "viscous"
     assert found.model.verified
     found.save(tmp_path)
     written = (tmp_path / "choices.toml").read_text().splitlines()
-    assert {'fit = ["viscous"]', "pull = 0.02", "max-gap = 0.1"} <= set(written)
+    assert {'fit = ["viscous"]', "pull = 0.02"} <= set(written)
     for wrong, words in [
         ({"pull": 0.02}, "fit names no group"),
         ({"fit": ["viscous"], "pull": 2.0}, "pull is 2.0; give a weight from 0 to 1"),
         ({"fit": ["mass"]}, "fit: unknown variant `mass`"),
-        ({"max_gap": 0.0}, "max_gap is 0.0 s"),
         ({"gains": [np.nan] * 6}, "gains is .*; give finite numbers"),
         ({"gains": [1.0] * 5}, "gains: 5 given; give one for each of the 6 joints"),
         ({"gains": [0.0] * 6}, "gain 1 is 0"),

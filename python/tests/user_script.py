@@ -15,7 +15,7 @@ def main() -> None:
     verdict: rt.Check = rt.check(model, data)
     sets: list[rt.ReachableSet] = rt.reach(model, data)
     built: rt.BuiltModel = rt.model(
-        robot, ["logs"], "motor", horizon=0.2, gains=[1.0] * 6, fit=["inertia"], max_gap=0.1
+        robot, ["logs"], "motor", horizon=0.2, gains=[1.0] * 6, fit=["inertia"]
     )
     ratios: list[float | None] = [row.ratio for row in built.joints]
     windows: rt.Recordings = rt.prepare(robot, "logs", window=0.5, compensate=True)

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use reachtube::recordings::Torque;
 
+use crate::error::{Error, Result};
 use crate::option_values::{Choices, choice, seconds, trimmed};
 
 // A comment, not a doc comment: clap would show it as the description of the command.
@@ -30,6 +31,18 @@ pub(crate) struct DataArguments {
     #[arg(long, hide_short_help = true)]
     #[arg(value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub max_gap: Option<f64>,
+}
+
+impl DataArguments {
+    /// Refuses a limit of gaps in logs, of which none is filled.
+    pub(crate) fn refuse_gap_of_logs(&self) -> Result<()> {
+        self.max_gap.map_or(Ok(()), |_| {
+            Err(Error::setting(
+                "--max-gap is for runs whose inputs are held over a gap: no window of a log \
+                 crosses one; leave it out",
+            ))
+        })
+    }
 }
 
 pub(crate) const TORQUES: Choices = &[

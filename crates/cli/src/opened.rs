@@ -22,7 +22,6 @@ pub(crate) struct OpenedCheck {
     pub problem: Problem,
     tube: Tube,
     data: PathBuf,
-    max_gap: Option<f64>,
 }
 
 impl OpenedCheck {
@@ -60,7 +59,8 @@ impl OpenedCheck {
                  --torque {given}"
             )));
         }
-        let job = check_job(model, setup, &args.data, args.max_gap)?
+        model.preparation.as_ref().map_or(Ok(()), |_| args.refuse_gap_of_logs())?;
+        let job = check_job(model, setup, &args.data)?
             .suites(&args.suites)
             .notion(notion)
             .until(args.until)
@@ -68,7 +68,7 @@ impl OpenedCheck {
             .keep(keep);
         let bar = Progress::new();
         let conform::Opened { model, problem, tube } = job.open(&bar)?;
-        Ok(Self { model, problem, tube, data: args.data.clone(), max_gap: args.max_gap })
+        Ok(Self { model, problem, tube, data: args.data.clone() })
     }
 
     /// Prints notes as [`print_notes`] does.
@@ -97,7 +97,7 @@ impl OpenedCheck {
             return Ok(check);
         }
         let paths = [self.data.clone()];
-        Ok(check.explained_by(unexplained_by_model(&self.model, &paths, self.max_gap)?))
+        Ok(check.explained_by(unexplained_by_model(&self.model, &paths)?))
     }
 
     /// Returns a check on a few lines.

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use reachtube_recordings::Run;
 
 use crate::agreement::median;
@@ -7,6 +9,16 @@ const LEAST_JUMP: f64 = 0.03;
 
 /// ... and this many times as far as the joint moves from one sample to the next at most.
 const JUMP: f64 = 5.0;
+
+/// Most samples of one jump there and back.
+const AWAY: usize = 50;
+
+/// A jump back differs from the jump there by less than this part.
+const RETURN: f64 = 0.2;
+
+/// The motion after samples that repeat differs from what the velocity explains by less than this
+/// part.
+const HELD: f64 = 0.5;
 
 /// A torque beyond this multiple of nearly all others of the joint is a wrong sample.
 const HUGE: f64 = 10.0;
@@ -34,6 +46,8 @@ pub struct WrongSamples {
     pub text: String,
     /// Whether the samples are wrong for sure; else they are only few.
     pub is_certain: bool,
+    /// The samples without which the others are right; empty if there are none such.
+    pub rows: Vec<Range<usize>>,
 }
 
 /// Returns samples of a recording that cannot be right: rows of zeros, positions that jump, torques
@@ -44,10 +58,10 @@ pub fn wrong_samples(run: &Run) -> Vec<WrongSamples> {
         return Vec::new();
     }
     let mut found: Vec<WrongSamples> = zeros(run).into_iter().collect();
-    if found.is_empty() {
-        found.extend((0..run.joints).filter_map(|joint| jump(run, joint)));
-        found.extend((0..run.joints).filter_map(|joint| huge_torque(run, joint)));
-    }
+    // Positions jump to zeros and back.
+    let zeros: Vec<Range<usize>> = found.iter().flat_map(|found| found.rows.clone()).collect();
+    found.extend((0..run.joints).filter_map(|joint| jump(run, joint, &zeros)));
+    found.extend((0..run.joints).filter_map(|joint| huge_torque(run, joint)));
     found.extend(repeated(run));
     found
 }
@@ -58,11 +72,23 @@ fn zeros(run: &Run) -> Option<WrongSamples> {
     let is_away = |k: usize| k < run.len() && run.q(k).iter().any(|q| q.abs() > NEAR_ZERO);
     let is_dropped = |k: &usize| is_zero(*k) && (is_away(k.wrapping_sub(1)) || is_away(k + 1));
     let first = (0..run.len()).find(is_dropped)?;
-    let text = match (first..run.len()).take_while(|k| is_zero(*k)).count() {
+    let zeros: Vec<usize> = (0..run.len()).filter(|k| is_zero(*k)).collect();
+    let chunks = zeros.chunk_by(|a, b| a + 1 == *b).map(|chunk| chunk[0]..chunk[0] + chunk.len());
+    // A robot may also rest at zero.
+    let rows: Vec<Range<usize>> =
+        chunks.filter(|rows| rows.clone().any(|k| is_dropped(&k))).collect();
+    let text = match rows[0].len() {
         1 => "is a row of zeros".into(),
         count => format!("is the first of {count} rows of zeros"),
     };
-    Some(WrongSamples { sample: Some(first), joint: None, text, is_certain: true })
+    Some(WrongSamples { sample: Some(first), joint: None, text, is_certain: true, rows })
+}
+
+/// Returns what nearly all of some values do not exceed.
+fn nearly_all(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted[((sorted.len() - 1) as f64 * NEARLY_ALL) as usize]
 }
 
 fn usual_step(run: &Run) -> f64 {
@@ -70,48 +96,76 @@ fn usual_step(run: &Run) -> f64 {
 }
 
 /// Returns the first jump of a joint's position that its velocity does not explain, and the number
-/// of jumps.
-fn jump(run: &Run, joint: usize) -> Option<WrongSamples> {
+/// of jumps. Jumps to and from rows of `zeros` are none.
+fn jump(run: &Run, joint: usize, zeros: &[Range<usize>]) -> Option<WrongSamples> {
     let usual = usual_step(run);
     let step = |k: usize| run.times[k] - run.times[k - 1];
-    let fastest = (0..run.len()).map(|k| run.qd(k)[joint].abs()).fold(0.0, f64::max);
     let moved = |k: usize| run.q(k)[joint] - run.q(k - 1)[joint];
-    let mut moves: Vec<f64> = (1..run.len()).map(|k| moved(k).abs()).collect();
-    moves.sort_by(f64::total_cmp);
     // Velocities in a wrong unit explain no motion, and a few jumps are not the usual motion.
-    let usual_move = moves[((moves.len() - 1) as f64 * NEARLY_ALL) as usize];
+    // Velocities that are derived from positions jump with them.
+    let usual_move = nearly_all((1..run.len()).map(|k| moved(k).abs()));
+    let fastest = nearly_all((0..run.len()).map(|k| run.qd(k)[joint].abs()));
     let limit = LEAST_JUMP.max(JUMP * usual_move.max(fastest * usual));
-    let beyond = |k: usize| moved(k) - 0.5 * step(k) * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
+    let speed = |k: usize| 0.5 * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
+    let beyond = |k: usize| moved(k) - step(k) * speed(k);
     let is_jump = |k: &usize| step(*k) < ONE_STEP * usual && beyond(*k).abs() > limit;
-    let jumps: Vec<usize> = (1..run.len()).filter(is_jump).collect();
+    let is_of_zeros = |k: &usize| zeros.iter().any(|rows| (rows.start..=rows.end).contains(k));
+    let jumps: Vec<usize> = (1..run.len()).filter(|k| is_jump(k) && !is_of_zeros(k)).collect();
     let first = *jumps.first()?;
-    let is_back = jumps.len() == 2 && beyond(first) * beyond(jumps[1]) < 0.0;
-    let how = match jumps.len() {
-        1 => " in one sample".into(),
-        2 if is_back && jumps[1] == first + 1 => " in one sample and back".into(),
-        2 if is_back => format!(" for {} samples", jumps[1] - first),
-        count => format!(" in one sample, and {} times more", count - 1),
+    let is_back = |a: usize, b: usize| {
+        b - a <= AWAY && (beyond(a) + beyond(b)).abs() < RETURN * beyond(a).abs()
     };
+    // While samples repeat, the joint moves on as fast as before and after.
+    let held = |k: usize| {
+        let count =
+            (1..k).take_while(|back| run.state(k - back) == run.state(k - back - 1)).count();
+        let explained = speed(k) * (run.times[k] - run.times[k - 1 - count]);
+        let is_held = (moved(k) - explained).abs() < HELD * moved(k).abs();
+        (count > 0 && is_held).then_some(k - count..k)
+    };
+    let (mut rows, mut at) = (Vec::new(), 0);
+    while let Some(&k) = jumps.get(at) {
+        let back = jumps.get(at + 1).filter(|next| is_back(k, **next));
+        let Some(wrong) = back.map(|next| k..*next).or_else(|| held(k)) else { break };
+        at += if back.is_some() { 2 } else { 1 };
+        rows.push(wrong);
+    }
+    let mut how = match rows.first() {
+        Some(away) if away.start == first && away.len() == 1 => " in one sample and back".into(),
+        Some(away) if away.start == first => format!(" for {} samples", away.len()),
+        Some(held) => format!(" after {} samples that repeat the one before", held.len()),
+        None => " in one sample".to_string(),
+    };
+    // What remains of the jumps is of unknown extent.
+    let (places, is_whole) = (rows.len(), at == jumps.len());
+    let more = if is_whole { places - 1 } else { jumps.len() - 1 };
+    match more {
+        0 => (),
+        1 => how += ", and once more",
+        _ => how += &format!(", and {more} times more"),
+    }
     let text = format!(
         "jumps by {:.3}{how}, where its velocity explains {:.3}",
         moved(first),
         moved(first) - beyond(first)
     );
-    Some(WrongSamples { sample: Some(first), joint: Some(joint), text, is_certain: true })
+    let rows = if is_whole { rows } else { Vec::new() };
+    Some(WrongSamples { sample: Some(first), joint: Some(joint), text, is_certain: true, rows })
 }
 
 /// Returns the first torque that is far beyond nearly all others.
 fn huge_torque(run: &Run, joint: usize) -> Option<WrongSamples> {
     let sizes = || (0..run.len()).map(|k| run.torque(k)[joint].abs());
-    let mut sorted: Vec<f64> = sizes().collect();
-    sorted.sort_by(f64::total_cmp);
-    let usual = sorted[((sorted.len() - 1) as f64 * NEARLY_ALL) as usize];
-    let sample = sizes().position(|size| usual > 0.0 && size > HUGE * usual)?;
+    let usual = nearly_all(sizes());
+    let is_huge = |(k, size): (usize, f64)| (size > HUGE * usual).then_some(k..k + 1);
+    let rows: Vec<Range<usize>> =
+        sizes().enumerate().filter_map(is_huge).filter(|_| usual > 0.0).collect();
+    let sample = rows.first()?.start;
     let text = format!(
         "has a torque of {:.1}, and below {usual:.1} in 99 % of the samples",
         run.torque(sample)[joint]
     );
-    Some(WrongSamples { sample: Some(sample), joint: Some(joint), text, is_certain: true })
+    Some(WrongSamples { sample: Some(sample), joint: Some(joint), text, is_certain: true, rows })
 }
 
 /// Returns whether samples in motion repeat the one before, as if a sensor were slower than the
@@ -136,7 +190,9 @@ fn repeated(run: &Run) -> Option<WrongSamples> {
         100.0 * part,
         (1.0 - part) / usual_step(run)
     );
-    (part > REPEATED).then_some(WrongSamples { sample: None, joint: None, text, is_certain: false })
+    let rows = Vec::new();
+    let found = WrongSamples { sample: None, joint: None, text, is_certain: false, rows };
+    (part > REPEATED).then_some(found)
 }
 
 #[cfg(test)]
@@ -208,6 +264,58 @@ mod tests {
             }
         })[0];
         assert!(torque.sample == Some(7) && torque.text.contains("-4000.0"), "{torque:?}");
+    }
+
+    #[test]
+    fn a_few_wrong_samples_have_their_rows_and_a_step_has_none() {
+        let rows = |change: &dyn Fn(usize, &mut [f64])| found(change).remove(0).rows;
+        let spikes = |k: usize, row: &mut [f64]| {
+            row[1] +=
+                if k == 100 { 0.4 } else { 0.0 } - if (200..203).contains(&k) { 0.7 } else { 0.0 };
+        };
+        assert_eq!(rows(&spikes), [100..101, 200..203]);
+        let text = &found(spikes)[0].text;
+        assert!(text.contains("in one sample and back, and once more"), "{text}");
+        assert_eq!(rows(&|k, row| row[0] += if k < 300 { 0.0 } else { 0.5 }), []);
+        let zeros = |k: usize, row: &mut [f64]| {
+            if k == 0 || (40..42).contains(&k) {
+                row.fill(0.0);
+            }
+        };
+        assert_eq!(rows(&zeros), [0..1, 40..42]);
+        let both = found(|k, row| {
+            row[1] += if k == 100 { 0.4 } else { 0.0 };
+            zeros(k, row);
+        });
+        assert_eq!((both.len(), &both[1].rows[..]), (2, &[100..101][..]));
+        let torque = |k: usize, row: &mut [f64]| row[4] *= if k % 200 == 9 { 1e3 } else { 1.0 };
+        assert_eq!(rows(&torque), [9..10, 209..210, 409..410]);
+        // A spike shows in velocities that were derived from the positions.
+        let derived = |k: usize, row: &mut [f64]| match k {
+            99 => row[2] += 25.0,
+            100 => row[0] += 0.5,
+            101 => row[2] -= 25.0,
+            _ => (),
+        };
+        assert_eq!(rows(&derived), [100..101]);
+    }
+
+    #[test]
+    fn samples_that_stand_still_in_motion_have_their_rows() {
+        let still = |k: usize, row: &mut [f64]| {
+            if (160..180).contains(&k) {
+                let t = 1.59f64;
+                row[..4].copy_from_slice(&[
+                    1.0 + t.sin(),
+                    (2.0 * t).sin(),
+                    t.cos(),
+                    2.0 * (2.0 * t).cos(),
+                ]);
+            }
+        };
+        let found = &found(still)[0];
+        assert_eq!((found.joint, &found.rows[..]), (Some(1), &[160..180][..]));
+        assert!(found.text.contains("after 20 samples that repeat the one before"), "{found:?}");
     }
 
     #[test]

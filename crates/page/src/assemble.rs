@@ -256,7 +256,6 @@ mod tests {
             gains: Vec::new(),
             cut_off: None,
             window: Some(0.5),
-            max_gap: None,
             columns: ColumnSettings::default(),
             log: LogSettings::default(),
         };

@@ -1,4 +1,5 @@
 use std::path::Path;
+use std::sync::Arc;
 
 use reachtube_arm::Equations;
 use reachtube_conform::{Answer, FitSettings, Group, Progress};
@@ -23,6 +24,7 @@ use crate::remedies::TooWide;
 use crate::robot::{Evidence, Nominal, prepare_for};
 use crate::sorted::{Sorted, WARMTH, unknown_warmth};
 use crate::steps::{Steps, digest};
+use crate::stretches::{Use, check_used, entries, left_out};
 use crate::trial::Trial;
 use crate::windows::Prepared;
 use crate::without_model::WithoutModel;
@@ -83,18 +85,26 @@ pub fn build(
     settings.gain_of_each_joint(robot.joint_count())?;
     let sorted = Sorted::read(&mut chooser, given, robot, &settings)?;
     let journal = Steps::open(journal, digest(robot, torque, given, &sorted.digest));
+    let moving: Vec<Arc<RawLog>> =
+        sorted.motions.iter().map(|recording| Arc::clone(&recording.log)).collect();
     let split = Split::new(sorted.motions, given.held_out.as_deref())?;
     refuse_unknown_warmth(given, &split)?;
     chooser.choose_held_out(&split);
-    let raw: Vec<&RawLog> = split.kept.iter().map(|recording| &*recording.log).collect();
+    let from_start = torque == Torque::Compensated;
+    let parts = split.in_stretches(Use { cut_off: f64::INFINITY, from_start });
+    let raw: Vec<&RawLog> = parts.kept.iter().map(|recording| &*recording.log).collect();
     given.horizon.map_or(Ok(()), |horizon| check_window(horizon, raw.iter().copied()))?;
     let choices = first_choices(&mut chooser, &journal, robot, torque, &raw, &settings);
     let (first, cut_off) = choices?;
+    let what = Use { cut_off: if from_start { f64::INFINITY } else { cut_off }, from_start };
+    check_used(moving.iter().map(|log| &**log), what)?;
+    let (left_out, split) =
+        (left_out(sorted.all.iter().map(|log| &**log), what), split.in_stretches(what));
 
     // The robot.
     let evidence = Evidence {
-        rest: sorted.rest,
-        one_joint: sorted.one_joint,
+        rest: entries(&sorted.rest, what),
+        one_joint: entries(&sorted.one_joint, what),
         motions: &split.kept,
         torque,
         settings: &settings,
@@ -105,7 +115,8 @@ pub fn build(
     chooser.choose("identify", chosen.is_identified.to_string(), &chosen.reason);
     chooser.choices.identify = Some(chosen.is_identified);
     let job = Decided { robot, given, split: &split, evidence: &evidence };
-    job.finish(chooser, chosen, (sorted.notes, sorted.findings), sorted.simulated)
+    let findings = left_out.into_iter().chain(sorted.findings).collect();
+    job.finish(chooser, chosen, (sorted.notes, findings), sorted.simulated)
 }
 
 /// Refuses a fit of warm-up to recordings that do not say how warm the robot was.
@@ -321,7 +332,6 @@ fn preparation(choices: &Choices, torque: Torque) -> Preparation {
         gains: choices.gains.clone(),
         cut_off: choices.cut_off,
         window,
-        max_gap: choices.max_gap,
         columns: choices.columns.clone(),
         log: choices.log.clone(),
     }

@@ -26,7 +26,6 @@ impl Choices {
         let single = [
             ("horizon", self.horizon, above),
             ("cut-off", self.cut_off, above),
-            ("max-gap", self.max_gap, above),
             ("largest-ratio", self.largest_ratio, "a number above 0"),
             ("largest-growth", self.largest_growth, "a number of 1 or more"),
             ("largest-outside", self.largest_outside, "a part of the rows, from 0 to 1"),

@@ -85,9 +85,6 @@ pub struct Choices {
     /// Weight of the pull of the fit toward the identified values.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pull: Option<f64>,
-    /// Longest time between two samples of a recording, s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_gap: Option<f64>,
     /// Joints that are held at positions, as `JOINT=VALUE`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lock: Vec<String>,
@@ -216,7 +213,6 @@ impl Choices {
             allowance: given.allowance.or(self.allowance),
             fit: given.fit.or(self.fit),
             pull: given.pull.or(self.pull),
-            max_gap: given.max_gap.or(self.max_gap),
             lock: filled(given.lock, self.lock),
             columns: other(given.columns, self.columns),
             log: other(given.log, self.log),
@@ -245,7 +241,6 @@ impl Choices {
     pub(crate) fn prepare_settings(&self) -> PrepareSettings {
         PrepareSettings {
             gains: self.gains.clone(),
-            max_gap: self.max_gap,
             columns: self.columns.clone(),
             log: self.log.clone(),
             ..PrepareSettings::default()

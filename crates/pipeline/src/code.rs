@@ -9,5 +9,7 @@ reachtube_finding::codes! {
         ShortHorizon = "short-horizon",
         /// Positions that were whole turns away from other recordings were moved.
         TurnsMoved = "turns-moved",
+        /// Samples are missing or were left out, and no window crosses them.
+        MissingSamples = "missing-samples",
     }
 }

@@ -12,6 +12,7 @@ use reachtube_robot::Robot;
 
 use crate::error::Result;
 use crate::sorted::{origins_of, read_logs, without_suite_note};
+use crate::stretches::{Use, in_stretches};
 use crate::windows::{Origin, Prepared, windows_of};
 
 /// Logs that were cut into windows, and what was done to them.
@@ -29,8 +30,7 @@ impl Cut {
     /// Reads logs and cuts them into windows of `horizon` \[s\]. Before that, torques of motors or
     /// links are filtered with a cut-off that is chosen from the logs, and the robot's gravity and
     /// dry friction are subtracted from them; compensated torques stay as they are. Logs of the
-    /// motions `calibrate`, by name or pattern, choose no cut-off. `max_gap` is the longest time
-    /// between two samples, s.
+    /// motions `calibrate`, by name or pattern, choose no cut-off.
     ///
     /// # Errors
     ///
@@ -40,23 +40,30 @@ impl Cut {
         robot: &Robot,
         torque: Torque,
         horizon: f64,
-        max_gap: Option<f64>,
         calibrate: &[String],
         paths: &[PathBuf],
     ) -> Result<Self> {
         robot.check_physical()?;
-        let settings =
-            PrepareSettings { max_gap, torque: Some(torque), ..PrepareSettings::default() };
+        let settings = PrepareSettings { torque: Some(torque), ..PrepareSettings::default() };
         let raw = read_logs(paths, robot, &settings)?;
         check_window(horizon, &raw)?;
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
         notes.extend(without_suite_note(&raw));
-        let origins = &origins_of(&raw);
+        let whole = origins_of(&raw);
         let cut_off = match torque {
             Torque::Compensated => None,
-            _ => Some(rounded(cut_off(&without(&raw, origins, calibrate), &settings)?)),
+            _ => {
+                let what = Use { cut_off: f64::INFINITY, from_start: false };
+                let (raw, origins, _) = in_stretches(&raw, &whole, what)?;
+                Some(rounded(cut_off(&without(&raw, &origins, calibrate), &settings)?))
+            }
         };
+        let of = raw.len();
+        let what = Use { cut_off: cut_off.unwrap_or(f64::INFINITY), from_start: false };
+        let (raw, origins, left_out) = in_stretches(&raw, &whole, what)?;
+        let origins = &origins;
+        notes.extend(left_out);
         let logs = match cut_off {
             Some(cut_off) => {
                 let prepared = prepare(&raw, &settings, cut_off, Some(robot))?;
@@ -75,14 +82,13 @@ impl Cut {
             shortest: 0.0,
         };
         let windows = prepared.cut(horizon, usize::MAX)?.named(windows_of(paths));
-        let [count, of] = [windows.runs().len(), raw.len()];
+        let count = windows.runs().len();
         notes.push(format!("cut {of} recordings into {count} windows of {horizon} s"));
         let preparation = Preparation {
             torque,
             gains: Vec::new(),
             cut_off,
             window: Some(horizon),
-            max_gap,
             columns: ColumnSettings::default(),
             log: LogSettings::default(),
         };
@@ -135,7 +141,7 @@ mod tests {
         let cut_off = |calibrate: &[&str], path: &str| {
             let calibrate: Vec<String> = calibrate.iter().map(ToString::to_string).collect();
             let paths = [folder.path().join(path)];
-            let cut = Cut::new(&pendulum(), Torque::Motor, 0.25, None, &calibrate, &paths).unwrap();
+            let cut = Cut::new(&pendulum(), Torque::Motor, 0.25, &calibrate, &paths).unwrap();
             cut.preparation.cut_off.unwrap()
         };
         let [all, slow] = [cut_off(&[], ""), cut_off(&[], "slow.csv")];
@@ -150,7 +156,7 @@ mod tests {
         let log = "t,q1,qd1,tau1\n0,0,1,0\n0.1,0.1,1,0\n0.2,0.2,1,0\n";
         std::fs::write(folder.path().join("a.csv"), log).unwrap();
         let paths = [folder.path().to_path_buf()];
-        let cut = |horizon| Cut::new(&pendulum(), Torque::Compensated, horizon, None, &[], &paths);
+        let cut = |horizon| Cut::new(&pendulum(), Torque::Compensated, horizon, &[], &paths);
         let refused = cut(0.001).unwrap_err().to_string();
         assert!(refused.contains("0.001 s is shorter than") && refused.contains("0.1 s"));
         assert_eq!(cut(0.1).unwrap().windows.runs().len(), 2);
@@ -172,7 +178,7 @@ mod tests {
         std::fs::write(folder.path().join("runs.csv"), &index).unwrap();
         let robot = pendulum();
         let paths = [folder.path().to_path_buf()];
-        let cut = || Cut::new(&robot, Torque::Compensated, 0.25, None, &[], &paths).unwrap();
+        let cut = || Cut::new(&robot, Torque::Compensated, 0.25, &[], &paths).unwrap();
         let noted = |cut: &Cut| cut.notes.iter().any(|n| n.contains("no suite in runs.csv"));
         let one = index.replace("run7.csv,A,7\n", "");
         std::fs::write(folder.path().join("runs.csv"), one).unwrap();

@@ -86,6 +86,19 @@ pub enum Error {
         /// The error.
         error: Box<Error>,
     },
+    /// Too much of a recording is missing, wrong, or between gaps that are close.
+    #[error(
+        "{flaw}; so much is missing or wrong there that {lost:.1} s of {duration:.1} s cannot be \
+         used: record again, or leave the log out"
+    )]
+    Lost {
+        /// The first samples that are missing or wrong, and the number of others.
+        flaw: String,
+        /// The time that is lost, s.
+        lost: f64,
+        /// The duration of the recording, s.
+        duration: f64,
+    },
     /// No recording is as long as a window.
     #[error("no recording is as long as the horizon of {horizon} s; give a shorter one")]
     NoWindow {

@@ -7,6 +7,7 @@ use reachtube_identify::prepare::{LogEntry, RawLog};
 use reachtube_recordings::matching;
 
 use crate::error::{Error, Result};
+use crate::stretches::{Use, stretches};
 use crate::windows::Origin;
 
 /// One motion in this many is held out.
@@ -85,6 +86,18 @@ impl Split {
         Ok(Self { kept, held_out, names, reason })
     }
 
+    /// Returns the same motions, with each recording as its stretches.
+    pub(crate) fn in_stretches(&self, what: Use) -> Self {
+        let of = |recording: &Recording| {
+            let stretches = stretches(&recording.log, what).into_iter().map(Arc::new);
+            let motion = recording.motion.clone();
+            stretches.map(move |log| Recording { log, motion: motion.clone() })
+        };
+        let [kept, held_out] =
+            [&self.kept, &self.held_out].map(|all| all.iter().flat_map(of).collect());
+        Self { kept, held_out, names: self.names.clone(), reason: self.reason.clone() }
+    }
+
     pub(crate) fn are_motions_whole(&self) -> bool {
         let motions = |recordings: &[Recording]| -> BTreeSet<String> {
             recordings.iter().map(|recording| recording.motion.clone()).collect()
@@ -156,16 +169,7 @@ impl Recording {
         let run = &self.log.run;
         let first = run.times.partition_point(|t| *t < from);
         let last = until.map_or(run.len(), |until| run.times.partition_point(|t| *t <= until));
-        let n = run.joints;
-        let mut part = run.clone();
-        part.times = run.times[first..last].iter().map(|t| t - run.times[first]).collect();
-        part.start += run.times[first];
-        part.states = run.states[2 * n * first..2 * n * last].to_vec();
-        part.torques = run.torques[n * first..n * last].to_vec();
-        if !run.temperatures.is_empty() {
-            part.temperatures = run.temperatures[n * first..n * last].to_vec();
-        }
-        let log = RawLog { run: part, ..RawLog::clone(&self.log) };
+        let log = RawLog { run: run.only(first..last), ..RawLog::clone(&self.log) };
         Self { log: Arc::new(log), motion: self.motion.clone() }
     }
 
@@ -211,6 +215,7 @@ mod tests {
                 run,
                 notes: vec![],
                 moved: vec![],
+                flaws: vec![],
             };
             Recording { log: Arc::new(log), motion: name }
         };

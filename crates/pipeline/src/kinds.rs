@@ -106,6 +106,7 @@ mod tests {
             order: None,
             notes: vec![],
             moved: vec![],
+            flaws: vec![],
             run,
         }
     }

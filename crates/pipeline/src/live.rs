@@ -178,7 +178,6 @@ mod tests {
             gains: vec![],
             cut_off: Some(5.0),
             window: None,
-            max_gap: None,
             columns: Default::default(),
             log: Default::default(),
         };

@@ -1,8 +1,8 @@
 //! Whether recorded torques are what the robot's description needs, up to sign and size.
 
-use reachtube_diagnose::{Contradiction, Described, WrongSamples, wrong_samples};
+use reachtube_diagnose::{Contradiction, Described};
 use reachtube_finding::{Finding, Remedy, Severity};
-use reachtube_identify::prepare::{PreparedLog, RawLog};
+use reachtube_identify::prepare::{Flaw, FlawOutcome, PreparedLog, RawLog};
 use reachtube_identify::signals;
 use reachtube_recordings::{Run, Torque, dead_torques};
 use reachtube_robot::Robot;
@@ -59,24 +59,19 @@ fn few_explained(joints: usize, of: usize) -> Option<Finding> {
     (2 * joints < of).then(|| Finding { numbers, ..contradiction(&text) })
 }
 
-/// Returns the recordings' samples that cannot be right, as findings with file, line and time.
-pub(crate) fn wrong(robot: &Robot, logs: &[&RawLog]) -> Vec<Finding> {
-    let of_log = |log: &&RawLog| -> Vec<Finding> {
-        let finding = |wrong: WrongSamples| {
-            let joint = wrong.joint.map(|joint| &*robot.joints()[joint].name);
-            let place = place(log, wrong.sample);
-            let time = wrong.sample.map(|sample| format!(" at {:.3} s", log.run.times[sample]));
-            let (subject, time) = (joint.unwrap_or("the sample"), time.unwrap_or_default());
-            let text = match wrong.sample {
-                Some(_) => format!("{place}: {subject}{time} {}", wrong.text),
-                None => format!("{place}: the samples {}", wrong.text),
-            };
-            let severity = if wrong.is_certain { Severity::Failure } else { Severity::Warning };
-            Finding { severity, place: Some(place), ..contradiction(&text) }
+/// Returns the recordings' samples that cannot be right, and were not left out, as findings.
+pub(crate) fn wrong(logs: &[&RawLog]) -> Vec<Finding> {
+    let finding = |flaw: &Flaw| {
+        let severity = match flaw.outcome {
+            FlawOutcome::LeftOut => return None,
+            FlawOutcome::Contradiction => Severity::Failure,
+            FlawOutcome::Named => Severity::Warning,
         };
-        wrong_samples(&log.run).into_iter().map(finding).collect()
+        let place = Some(flaw.place.clone());
+        Some(Finding { severity, place, ..contradiction(&flaw.text) })
     };
-    let mut found: Vec<Finding> = logs.iter().flat_map(of_log).collect();
+    let mut found: Vec<Finding> =
+        logs.iter().flat_map(|log| &log.flaws).filter_map(finding).collect();
     found.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     let more = found.len().saturating_sub(LISTED);
     found.truncate(LISTED);
@@ -84,19 +79,6 @@ pub(crate) fn wrong(robot: &Robot, logs: &[&RawLog]) -> Vec<Finding> {
         last.text += &format!(" {more} recordings or joints more have such samples.");
     }
     found
-}
-
-/// Returns the file of a log, with the line of a sample where each line of text is a sample.
-fn place(log: &RawLog, sample: Option<usize>) -> String {
-    let file =
-        log.file.file_name().map_or_else(|| log.name.clone(), |name| name.to_string_lossy().into());
-    let lines = || std::fs::read_to_string(&log.file).map(|text| text.lines().count());
-    match sample {
-        Some(sample) if lines().is_ok_and(|lines| lines == log.run.len() + 1) => {
-            format!("{file}:{}", sample + 2)
-        }
-        _ => file,
-    }
 }
 
 /// Returns the joints that move while their torque stays the same in every sample, as a finding.
@@ -142,6 +124,7 @@ mod tests {
             order: None,
             notes: vec![],
             moved: vec![],
+            flaws: vec![],
             run,
         };
         (robot, raw)

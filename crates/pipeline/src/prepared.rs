@@ -1,6 +1,7 @@
-use reachtube_arm::ArmModel;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use reachtube_arm::ArmModel;
 use reachtube_conform::{CheckJob, Model, Setup};
 use reachtube_identify::prepare::{PrepareSettings, PreparedLog, RawLog, check_window};
 use reachtube_recordings::{DataSet, MemoryRuns, Preparation, Torque, any_simulated};
@@ -10,25 +11,21 @@ use crate::error::{Error, Result};
 use crate::planned::Planned;
 use crate::robot::prepare_for;
 use crate::sorted::{WARMTH, origins_of, read_logs, unknown_warmth};
-use crate::windows::{Prepared, windows_of};
+use crate::stretches::{Use, in_stretches};
+use crate::windows::{Origin, Prepared, windows_of};
 
 /// Makes the job that compares a model with the recordings at a path: a folder with runs.csv, one
 /// CSV file (a planned motion), or for a model that `model` made, logs, which are prepared as its
-/// own were; `max_gap` is the longest time between two of their samples, s, if it is another.
+/// own were.
 ///
 /// # Errors
 ///
 /// Recordings that cannot be opened, or logs as for [`prepared`].
-pub fn check_job(
-    model: Model,
-    setup: Setup,
-    data: &Path,
-    max_gap: Option<f64>,
-) -> Result<CheckJob> {
+pub fn check_job(model: Model, setup: Setup, data: &Path) -> Result<CheckJob> {
     let windows = model
         .preparation
         .as_ref()
-        .map(|known| prepared(&model, known, &[data.to_path_buf()], max_gap))
+        .map(|known| prepared(&model, known, &[data.to_path_buf()]))
         .transpose()?;
     Ok(match windows {
         Some(windows) => CheckJob::new(model, setup, windows),
@@ -40,21 +37,17 @@ pub fn check_job(
     })
 }
 
-/// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`;
-/// `max_gap` is the longest time between two of their samples, s, if it is another.
+/// Reads logs and does to them what `preparation` says, as was done to the recordings of `model`.
+/// The notes of the windows say what was left out.
 ///
 /// # Errors
 ///
 /// Logs that cannot be read or prepared, or that lack the warmth of the robot although the model
 /// needs it, and [`Error::NoWindow`](crate::Error::NoWindow) if none is as long as a window.
-pub fn prepared(
-    model: &Model,
-    preparation: &Preparation,
-    paths: &[PathBuf],
-    max_gap: Option<f64>,
-) -> Result<MemoryRuns> {
-    let later = Later::read(model, preparation, paths, max_gap)?;
-    let (raw, window) = (&later.raw, &preparation.window);
+pub fn prepared(model: &Model, preparation: &Preparation, paths: &[PathBuf]) -> Result<MemoryRuns> {
+    let later = Later::read(model, preparation, paths)?;
+    let Later { raw, origins, notes, from_start, .. } = &later;
+    let window = &preparation.window;
     window.map_or(Ok(()), |window| check_window(window, raw))?;
     if let Some(warming) = model.arm().correction.as_ref().filter(|known| known.differs_by_run()) {
         let logs: Vec<&RawLog> = raw.iter().collect();
@@ -63,25 +56,29 @@ pub fn prepared(
             return Err(Error::Choice { key: "data", value, needed: WARMTH });
         }
     }
-    let logs = later.logs()?;
-    let (from_start, origins) = (window.is_none(), &origins_of(raw));
-    let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-    let prepared =
-        Prepared { logs: &logs, origins, from_start, divides: false, simulated, shortest: 0.0 };
+    let logs = later.logs()?;
+    let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
+    let (from_start, divides) = (*from_start, false);
+    let prepared = Prepared { logs: &logs, origins, from_start, divides, simulated, shortest: 0.0 };
     let horizon = match (window, model.usefulness.as_ref()) {
         (Some(window), _) => *window,
         (None, Some(said)) => said.horizon.min(longest),
         (None, None) => longest,
     };
-    Ok(prepared.cut(horizon, usize::MAX)?.named(windows_of(paths)))
+    Ok(prepared.cut(horizon, usize::MAX)?.named(windows_of(paths)).noted(notes.clone()))
 }
 
-/// Logs that are prepared as the recordings of a model were.
+/// Logs in stretches without gaps, which are prepared as the recordings of a model were.
 pub(crate) struct Later {
     pub raw: Vec<RawLog>,
     pub robot: Robot,
     pub settings: PrepareSettings,
+    origins: BTreeMap<String, Origin>,
+    /// What is said of samples that are left out.
+    notes: Vec<String>,
+    /// Whether motions start where the recordings do.
+    from_start: bool,
     torque: Torque,
     cut_off: f64,
 }
@@ -91,21 +88,22 @@ impl Later {
         model: &Model,
         preparation: &Preparation,
         paths: &[PathBuf],
-        max_gap: Option<f64>,
     ) -> Result<Self> {
-        let Preparation { torque, gains, cut_off, columns, log, .. } = preparation;
+        let Preparation { torque, gains, cut_off, columns, log, window } = preparation;
         let robot = Robot::from_description(&model.robot())?;
         let settings = PrepareSettings {
             gains: gains.clone(),
             torque: Some(*torque),
-            max_gap: max_gap.or(preparation.max_gap),
             columns: columns.clone(),
             log: log.clone(),
             ..PrepareSettings::default()
         };
-        let raw = read_logs(paths, &robot, &settings)?;
-        let (torque, cut_off) = (*torque, cut_off.unwrap_or(f64::INFINITY));
-        Ok(Self { raw, robot, settings, torque, cut_off })
+        let whole = read_logs(paths, &robot, &settings)?;
+        let (from_start, torque) = (window.is_none(), *torque);
+        let cut_off = cut_off.unwrap_or(f64::INFINITY);
+        let (raw, origins, notes) =
+            in_stretches(&whole, &origins_of(&whole), Use { cut_off, from_start })?;
+        Ok(Self { raw, robot, settings, origins, notes, from_start, torque, cut_off })
     }
 
     /// Returns the logs with the inputs of the model's robot.

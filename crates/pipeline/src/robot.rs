@@ -168,7 +168,7 @@ impl Evidence<'_> {
         if let Some(finding) = unmeasured(described, &logs) {
             return Ok((vec![finding], None));
         }
-        let mut found = wrong(described, &logs);
+        let mut found = wrong(&logs);
         if self.torque == Torque::Compensated {
             return Ok((found, None));
         }

@@ -73,7 +73,7 @@ impl ScenarioJob {
     /// As [`check_job`], [`CheckJob::open`] and [`verify`].
     pub fn run(self, progress: &dyn Progress) -> Result<Verified> {
         let Self { scenario, model, setup, body, scene } = self;
-        let job = check_job(model, setup, &scenario.data, None)?;
+        let job = check_job(model, setup, &scenario.data)?;
         verified(job, &scenario, (body, scene), progress)
     }
 

@@ -15,6 +15,7 @@ use crate::choices::Choices;
 use crate::chooser::Chooser;
 use crate::error::{Error, Result};
 use crate::findings::warning;
+use crate::flaws::find_flaws;
 use crate::held_out::Recording;
 use crate::kinds::{MotionType, motions};
 use crate::steps::data_digest;
@@ -26,8 +27,10 @@ pub(crate) const WARMTH: &str = "an index runs.csv, whose column order counts th
 
 /// Recordings by what they are.
 pub(crate) struct Sorted {
-    pub rest: Vec<LogEntry>,
-    pub one_joint: Vec<LogEntry>,
+    /// All recordings.
+    pub all: Vec<Arc<RawLog>>,
+    pub rest: Vec<Arc<RawLog>>,
+    pub one_joint: Vec<Arc<RawLog>>,
     pub motions: Vec<Recording>,
     /// Notes about the reading of the recordings for the user.
     pub notes: Vec<String>,
@@ -58,7 +61,6 @@ impl Sorted {
             let pairs = raw.iter().zip(&kinds).filter(|(_, other)| **other == kind);
             pairs.map(|(log, _)| log).collect()
         };
-        let entry = |log: &Arc<RawLog>| LogEntry::Recording(Arc::clone(log));
         let moving = of(MotionType::Motion);
         if moving.is_empty() {
             let (rest, one) = (count(MotionType::Rest), count(MotionType::OneJoint));
@@ -82,13 +84,13 @@ impl Sorted {
         let recordings = recordings.map(|(log, motion)| Recording { log: Arc::clone(log), motion });
         let motions = recordings.collect();
         let [rest, one_joint] = [MotionType::Rest, MotionType::OneJoint]
-            .map(|kind| of(kind).into_iter().map(entry).collect());
+            .map(|kind| of(kind).into_iter().cloned().collect());
         let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
         let findings =
             raw.iter().flat_map(|log| log.moved.iter().map(|text| warning(Code::TurnsMoved, text)));
         let findings = copies.into_iter().chain(findings).collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
-        Ok(Self { rest, one_joint, motions, notes, findings, simulated, digest })
+        Ok(Self { all: raw, rest, one_joint, motions, notes, findings, simulated, digest })
     }
 }
 
@@ -118,19 +120,23 @@ fn without_copies(raw: Vec<RawLog>) -> (Vec<Arc<RawLog>>, Option<Finding>) {
     (kept, finding)
 }
 
-/// Reads recordings. Each has the order of its index, and the motion, or else the suite, if the log
-/// names no motion itself. Files of one name have the names of their folders too.
+/// Reads recordings, and looks for samples that are missing or wrong. Each recording has the order
+/// of its index, and the motion, or else the suite, if the log names no motion itself. Files of one
+/// name have the names of their folders too.
 ///
 /// # Errors
 ///
-/// Recordings that cannot be read, and an index beside them that is wrong.
+/// Recordings that cannot be read or of which much is missing, and an index beside them that is
+/// wrong.
 pub(crate) fn read_logs(
     paths: &[PathBuf],
     robot: &Robot,
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
     let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
-    let mut raw = read(&entries, Path::new(""), robot, settings)?;
+    // Gaps are looked for in what was read.
+    let settings = PrepareSettings { max_gap: Some(f64::INFINITY), ..settings.clone() };
+    let mut raw = read(&entries, Path::new(""), robot, &settings)?;
     let known = indexed(&raw, paths)?;
     for log in &mut raw {
         if let Some(RunEntry { motion, suite, order, .. }) = known.get(&log.file).cloned() {
@@ -141,6 +147,7 @@ pub(crate) fn read_logs(
         }
     }
     name_apart(&mut raw);
+    raw.iter_mut().try_for_each(|log| find_flaws(log, robot))?;
     Ok(raw)
 }
 

@@ -15,6 +15,9 @@ const LEFT_OUT: &str = "factor for a motion left out";
 /// Number of horizons beyond the chosen one whose sets are listed.
 const BEYOND: usize = 2;
 
+/// What is mended in recordings.
+const MENDED: [Code; 2] = [Code::TurnsMoved, Code::MissingSamples];
+
 impl Built {
     /// Returns the verdict as one sentence: whether the sets were proved, and up to which time they
     /// are useful.
@@ -57,7 +60,7 @@ impl Built {
                 .insert(0, format!("not acceptable: {}", finding.written_for(front_end)));
         }
         // What was mended in the recordings comes before what was made of them.
-        summary.verdict.splice(0..0, self.moved());
+        summary.verdict.splice(0..0, MENDED.iter().filter_map(|code| self.mended(*code)));
         // What was found in the recordings is the cause; else the likeliest one is said.
         let of_recordings =
             |found: &&Finding| found.code == Code::Contradiction && !self.is_useful();
@@ -73,7 +76,9 @@ impl Built {
         if let Some(without) = &self.without_model {
             without.add_to(&mut summary.table);
         }
-        let is_said = |other: &&Finding| Some(*other) == found || other.code == Code::TurnsMoved;
+        let is_said = |other: &&Finding| {
+            Some(*other) == found || MENDED.iter().any(|code| other.code == *code)
+        };
         let warnings = self.findings.iter().filter(|other| !is_said(other));
         summary.warnings = warnings.map(|finding| finding.written_for(front_end)).collect();
         summary.facts.retain(|(name, _)| name != NEW_MOTIONS);
@@ -95,12 +100,12 @@ impl Built {
         summary
     }
 
-    /// Returns which recordings were moved by whole turns: the first of them, with the number of
-    /// the others.
-    fn moved(&self) -> Option<String> {
-        let mut moved = self.findings.iter().filter(|other| other.code == Code::TurnsMoved);
-        let first = moved.next()?;
-        let more = match moved.count() {
+    /// Returns in which recordings the same was mended: the first of them, with the number of the
+    /// others.
+    fn mended(&self, code: Code) -> Option<String> {
+        let mut mended = self.findings.iter().filter(|other| other.code == code);
+        let first = mended.next()?;
+        let more = match mended.count() {
             0 => String::new(),
             count => format!(" ({count} more likewise)"),
         };

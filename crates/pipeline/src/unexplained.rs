@@ -95,14 +95,10 @@ impl Evidence<'_> {
 /// # Errors
 ///
 /// As [`prepared`](crate::prepared).
-pub fn unexplained_by_model(
-    model: &Model,
-    paths: &[PathBuf],
-    max_gap: Option<f64>,
-) -> Result<Vec<Finding>> {
+pub fn unexplained_by_model(model: &Model, paths: &[PathBuf]) -> Result<Vec<Finding>> {
     let Some(preparation) = &model.preparation else { return Ok(Vec::new()) };
     let Some(cut_off) = preparation.cut_off else { return Ok(Vec::new()) };
-    let later = Later::read(model, preparation, paths, max_gap)?;
+    let later = Later::read(model, preparation, paths)?;
     if preparation.torque == Torque::Compensated || model.arm().settings.equations.is_kinematic() {
         return Ok(Vec::new());
     }

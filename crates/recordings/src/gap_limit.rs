@@ -55,7 +55,8 @@ impl GapLimit {
     }
 
     /// Returns the longest step allowed, s, in a run with these steps, s, in any order.
-    pub(crate) fn longest_step(self, mut steps: Vec<f64>) -> f64 {
+    #[must_use]
+    pub fn longest_step(self, mut steps: Vec<f64>) -> f64 {
         if let Self::Seconds(seconds) = self {
             return seconds * (1.0 + 1e-9);
         }

@@ -25,6 +25,7 @@ pub struct MemoryRuns {
     runs: Vec<Run>,
     /// The name of the runs in messages, if it is known.
     name: Option<PathBuf>,
+    notes: Vec<String>,
 }
 
 impl MemoryRuns {
@@ -32,6 +33,12 @@ impl MemoryRuns {
     #[must_use]
     pub fn named(self, name: impl Into<PathBuf>) -> Self {
         Self { name: Some(name.into()), ..self }
+    }
+
+    /// Returns the runs with notes for the user, such as what was left out.
+    #[must_use]
+    pub fn noted(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
     }
 
     /// Adds a run under a name, with its suite and the motion that the suite is part of. The run's
@@ -72,6 +79,10 @@ impl RunSource for MemoryRuns {
 
     fn run_name(&self, index: usize) -> PathBuf {
         PathBuf::from(&self.entries[index].file)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
     }
 
     fn read(&self, index: usize, options: &ReadOptions) -> Result<Run, Vec<Defect>> {

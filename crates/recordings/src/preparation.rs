@@ -22,9 +22,6 @@ pub struct Preparation {
     /// and all recordings of one motion are a suite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
-    /// The longest time between two samples of a log, s, if one was given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub max_gap: Option<f64>,
     /// Columns of CSV files, if their names are ambiguous.
     #[serde(default, skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,

@@ -217,6 +217,32 @@ impl Run {
         (!self.temperatures.is_empty()).then(|| (0..self.joints).map(mean).collect())
     }
 
+    /// Returns some of the samples, in increasing order, with times since the first of them.
+    ///
+    /// # Panics
+    ///
+    /// Panics if there is none of them.
+    #[must_use]
+    pub fn only(&self, samples: impl Iterator<Item = usize> + Clone) -> Self {
+        let first = samples.clone().next().expect("a run has a sample");
+        let rows = |values: &[f64], width: usize| match values {
+            [] => vec![],
+            _ => {
+                samples.clone().flat_map(|k| &values[width * k..width * (k + 1)]).copied().collect()
+            }
+        };
+        Self {
+            joints: self.joints,
+            start: self.start + self.times[first],
+            times: samples.clone().map(|k| self.times[k] - self.times[first]).collect(),
+            states: rows(&self.states, 2 * self.joints),
+            torques: rows(&self.torques, self.joints),
+            temperatures: rows(&self.temperatures, self.joints),
+            before: if first == 0 { self.before.clone() } else { vec![] },
+            sha256: self.sha256.clone(),
+        }
+    }
+
     /// Drops the samples later than `until` seconds after the first.
     pub(crate) fn truncate(&mut self, until: Option<f64>) {
         let Some(until) = until else { return };
@@ -247,6 +273,16 @@ mod tests {
         assert_eq!((run.start, &run.times[..], run.duration()), (5.0, &[0.0, 0.5][..], 0.5));
         assert_eq!((run.state(1), run.q(1), run.qd(1)), (&[3.0, 4.0][..], &[3.0][..], &[4.0][..]));
         assert_eq!((run.torque(0), run.len(), run.is_empty()), (&[5.0][..], 2, false));
+    }
+
+    #[test]
+    fn times_of_some_samples_count_from_the_first_of_them() {
+        let times: Vec<f64> = (0..5).map(|k| 2.0 + 0.5 * f64::from(k)).collect();
+        let run = Run::new(1, times, (0..10).map(f64::from).collect(), vec![3.0; 5]).unwrap();
+        let part = run.with_temperatures(vec![20.0, 21.0, 22.0, 23.0, 24.0]).unwrap().only(2..4);
+        assert_eq!((part.start, &part.times[..]), (3.0, &[0.0, 0.5][..]));
+        assert_eq!((&part.states[..], part.torques.len()), (&[4.0, 5.0, 6.0, 7.0][..], 2));
+        assert_eq!(part.temperatures, [22.0, 23.0]);
     }
 
     #[test]

@@ -129,7 +129,6 @@ fn windows_of_one_log_have_no_bound() {
             gains: vec![],
             cut_off,
             window,
-            max_gap: None,
             columns: Default::default(),
             log: Default::default(),
         };

@@ -70,10 +70,6 @@ pub(crate) struct Arguments {
     pub fit: Vec<Group>,
     #[command(flatten)]
     pub log: LogArguments,
-    /// Longest time between two samples, above 0 s; the torque is held over it [default: 1.9 times
-    /// the usual sample time, 10 times where sample times jitter]
-    #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
-    pub max_gap: Option<f64>,
     /// Folder for model.json, robot.toml, choices.toml and the page
     #[arg(long, value_name = "FOLDER")]
     pub out: PathBuf,
@@ -139,7 +135,6 @@ fn in_settings(error: PipelineError, args: &Arguments) -> PipelineError {
     let is_option = |key: &str| match key {
         "fit" => !args.fit.is_empty(),
         "horizon" => args.horizon.is_some(),
-        "max-gap" => args.max_gap.is_some(),
         _ => false,
     };
     match (&args.settings, &error) {
@@ -171,7 +166,6 @@ fn choices(args: &Arguments) -> Result<Choices> {
         columns: args.log.columns.clone().unwrap_or_default(),
         log: args.log.settings(),
         fit: (!args.fit.is_empty()).then(|| args.fit.clone()),
-        max_gap: args.max_gap,
         ..Choices::default()
     }))
 }

@@ -13,6 +13,7 @@ mod identify;
 mod index;
 mod inspect;
 mod locks;
+mod missing_samples;
 mod model;
 mod monitor;
 mod newcomer;

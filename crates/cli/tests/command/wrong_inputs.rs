@@ -26,7 +26,7 @@ fn arm(factor: f64) -> String {
 }
 
 /// Columns of a log: the time, and positions, velocities and torques of both joints.
-type Row = [f64; 7];
+pub(crate) type Row = [f64; 7];
 
 /// Returns a log of 10 s at 100 Hz. The links are a little heavier than described, and torques have
 /// noise.
@@ -57,14 +57,17 @@ fn log(robot: &Robot, number: usize) -> Vec<Row> {
 }
 
 /// Writes four logs into the folder `logs`, each row changed by `change` with its number and the
-/// number of its log.
-fn write(lab: &Lab, change: &dyn Fn(&mut Row, usize, usize)) {
+/// number of its log. Rows without a time are lost.
+pub(crate) fn write(lab: &Lab, change: &dyn Fn(&mut Row, usize, usize)) {
     let robot = Robot::from_toml(&arm(1.0), "arm").unwrap();
     std::fs::create_dir_all(lab.path("logs")).unwrap();
     for number in 0..4 {
         let mut text = String::from("t,q1,q2,qd1,qd2,tau1,tau2\n");
         for (k, mut row) in log(&robot, number).into_iter().enumerate() {
             change(&mut row, k, number);
+            if row[0].is_nan() {
+                continue;
+            }
             let cells =
                 row.map(|cell| if cell.is_nan() { String::new() } else { cell.to_string() });
             writeln!(text, "{}", cells.join(",")).unwrap();
@@ -73,9 +76,10 @@ fn write(lab: &Lab, change: &dyn Fn(&mut Row, usize, usize)) {
     }
 }
 
-const MODEL: &str = "model --robot arm.toml --data logs --torque motor --out made --quiet --force";
+pub(crate) const MODEL: &str =
+    "model --robot arm.toml --data logs --torque motor --out made --quiet --force";
 
-fn lab() -> Lab {
+pub(crate) fn lab() -> Lab {
     let lab = Lab::new();
     lab.write("arm.toml", arm(1.0));
     lab
@@ -299,8 +303,7 @@ fn raw_logs_of_strangers_end_with_a_reason() {
     let currents = "ur3e_rtde/wave_currentData_100v_40a.head.csv";
     model(&arm, currents, "", 2, "there is no torque, but there are motor currents");
     let gains = "--gains 10,10,10,9,9,9";
-    model(&arm, currents, gains, 2, "samples are missing and the input there is unknown");
-    model(&arm, currents, &format!("{gains} --max-gap 0.024"), 2, "1 of one joint at a time");
+    model(&arm, currents, gains, 2, "1 of one joint at a time");
 }
 
 #[test]

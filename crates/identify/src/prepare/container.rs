@@ -44,7 +44,16 @@ pub(crate) fn marked(
         let name = format!("{}_{:02}", name_of(path), number + 1);
         let (file, motion) = (path.to_path_buf(), cut.suite.clone());
         let notes = std::mem::take(&mut notes);
-        found.push(RawLog { name, file, motion, order: None, run, notes, moved: vec![] });
+        found.push(RawLog {
+            name,
+            file,
+            motion,
+            order: None,
+            run,
+            notes,
+            moved: vec![],
+            flaws: vec![],
+        });
     }
     Ok(found)
 }

@@ -284,7 +284,6 @@ mod tests {
             gains: Vec::new(),
             cut_off: Some(5.0),
             window: None,
-            max_gap: None,
             columns: Default::default(),
             log: Default::default(),
         }
@@ -323,6 +322,7 @@ mod tests {
                     run: run.clone(),
                     notes: vec![],
                     moved: vec![],
+                    flaws: vec![],
                 };
                 let log = &prepare(&[raw], &settings, 5.0, Some(&robot)).unwrap().logs[0];
                 let preparation = Preparation { torque, gains, ..preparation() };

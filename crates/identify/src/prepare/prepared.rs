@@ -59,6 +59,7 @@ pub fn prepare(
     let (logs, changes): (Vec<PreparedLog>, Vec<LogChange>) = done.into_iter().unzip();
     let mut changes =
         described(logs.iter().map(PreparedLog::len).sum(), &changes, settings, cut_off);
+    changes.extend(raw.iter().filter_map(|log| log.filled_gaps(settings.max_gap)));
     changes.extend(compensated.map(compensation));
     let has_motors = |robot: &&Robot| {
         settings.torque == Some(Torque::Link)
@@ -118,6 +119,15 @@ fn compensation(robot: &Robot) -> String {
          compensated){rest}",
         robot.name()
     )
+}
+
+/// Returns how long a recording is at least \[s\] of which a low-pass of `cut_off` \[Hz\] leaves
+/// samples, if they are `step` \[s\] apart; and the part of it that the ends take.
+#[must_use]
+pub fn shortest(cut_off: f64, step: f64) -> [f64; 2] {
+    let ends = 2.0 * TRANSIENT_PERIODS / cut_off;
+    // Twice as many samples, for steps that differ from one recording to the next.
+    [ends + 2.0 * MIN_SAMPLES as f64 * step, ends]
 }
 
 /// Returns the median of the median times between the samples of recordings \[s\].
@@ -204,6 +214,7 @@ mod tests {
             run,
             notes: vec![],
             moved: vec![],
+            flaws: vec![],
         }
     }
 

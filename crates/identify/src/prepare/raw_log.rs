@@ -24,6 +24,32 @@ pub struct RawLog {
     /// Contradictions to other recordings, one sentence each: positions that are whole turns away,
     /// and were moved.
     pub moved: Vec<String>,
+    /// Samples that are missing or wrong; empty if they were not looked for.
+    pub flaws: Vec<Flaw>,
+}
+
+/// Samples of a recording that are missing or wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flaw {
+    /// The recorded time of the first, or in the middle of a gap \[s\]; `None` if it is about all.
+    pub time: Option<f64>,
+    /// The file, with the line if it is known.
+    pub place: String,
+    /// What is wrong, as a clause with its place and time.
+    pub text: String,
+    /// What follows.
+    pub outcome: FlawOutcome,
+}
+
+/// What follows from samples that are missing or wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FlawOutcome {
+    /// They are left out, and no window crosses their time.
+    LeftOut,
+    /// They make the recording contradict the robot.
+    Contradiction,
+    /// They are named, and change nothing.
+    Named,
 }
 
 impl RawLog {
@@ -63,7 +89,16 @@ mod tests {
             let (states, torques) = (vec![0.0; 2 * times.len()], vec![0.0; times.len()]);
             let run = Run::new(1, times, states, torques).unwrap();
             let (name, file) = ("a".to_string(), "a.csv".into());
-            RawLog { name, file, motion: None, order: None, run, notes: vec![], moved: vec![] }
+            RawLog {
+                name,
+                file,
+                motion: None,
+                order: None,
+                run,
+                notes: vec![],
+                moved: vec![],
+                flaws: vec![],
+            }
         };
         let gap = log(vec![0.0, 0.01, 0.02, 0.52, 0.53, 0.54]);
         let note = gap.filled_gaps(Some(1.0)).unwrap();

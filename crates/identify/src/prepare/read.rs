@@ -38,7 +38,6 @@ pub fn read(
     let sources = sources(entries, folder, robot, settings)?;
     let read = sources.iter().map(|source| source.read(robot, settings));
     let mut logs = read.collect::<Result<Vec<RawLog>>>()?;
-    logs.iter_mut().for_each(|log| log.notes.extend(log.filled_gaps(settings.max_gap)));
     let names: Vec<String> = logs.iter().map(|log| log.file.display().to_string()).collect();
     let found: Vec<_> = logs.iter().map(|log| extents(&log.run)).collect();
     let (turns, notes) = missing_turns(robot, &names, &found);
@@ -138,7 +137,7 @@ impl Source {
         add_turns(&mut run, &self.turns);
         let run = if self.compensated { with_compensation(run, robot) } else { run };
         let (name, order) = (self.name(), self.order);
-        Ok(RawLog { name, file, motion: None, order, run, notes, moved: vec![] })
+        Ok(RawLog { name, file, motion: None, order, run, notes, moved: vec![], flaws: vec![] })
     }
 
     /// Returns the name of the file, or of the folder of the files.

@@ -1,6 +1,6 @@
 /// Returns the median time between samples \[s\], or `None` for fewer than two samples.
 #[must_use]
-pub(crate) fn median_step(times: &[f64]) -> Option<f64> {
+pub fn median_step(times: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
     (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)

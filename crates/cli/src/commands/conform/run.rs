@@ -100,8 +100,8 @@ fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
         }
         Some(horizon) => {
             let paths = std::slice::from_ref(&args.data.data);
-            let (torque, max_gap) = (arm.torque, args.data.max_gap);
-            let cut = Cut::new(&robot, torque, horizon, max_gap, &settings.calibrate, paths)?;
+            args.data.refuse_gap_of_logs()?;
+            let cut = Cut::new(&robot, arm.torque, horizon, &settings.calibrate, paths)?;
             output::notes(&cut.notes);
             let arm = ArmSettings { torque: Torque::Compensated, ..arm };
             (Job::new(basis.setup(arm, settings)?, cut.windows), Some(cut.preparation))
