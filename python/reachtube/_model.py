@@ -272,15 +272,13 @@ class Model(Record):
         Check
             A check that fails is returned with witnesses, not raised.
         """
+        recordings = source_for(self, data, max_gap)
+        # Logs show why they leave the sets.
+        logs = native_of_logs(data) if "preparation" in self._content else ([], None)
+        settings = differing(notion, until, max_gap)
         with shown(progress, "check") as tell:
             return Check(
-                _reachtube.check(
-                    self._text,
-                    source_for(self, data, max_gap),
-                    names(suites),
-                    differing(notion, until, max_gap),
-                    tell,
-                )
+                _reachtube.check(self._text, recordings, names(suites), settings, *logs, tell)
             )
 
     def _rows_of_sets(self) -> Iterator[tuple[str, str, str, float, float]]:

@@ -192,7 +192,13 @@ def model_findings(text: str) -> str: ...
 def check_findings(text: str) -> str: ...
 def model_report(text: str) -> tuple[str, str]: ...
 def check(
-    model: str, source: Source, suites: list[str], settings: str, progress: _Progress = None
+    model: str,
+    source: Source,
+    suites: list[str],
+    settings: str,
+    paths: list[str],
+    runs: Source | None,
+    progress: _Progress = None,
 ) -> str: ...
 def reach(
     model: str, source: Source, suites: list[str], settings: str, progress: _Progress = None

@@ -10,12 +10,14 @@ use reachtube::conform::{
 };
 use reachtube::finding::FrontEnd;
 use reachtube::page::{Assets, LIBRARY_FILE, Sources, page, write_html, write_library};
+use reachtube::pipeline::unexplained_by_model;
 use reachtube::{Progress, Torque, write};
 use serde_json::{Map, Value};
 
 use crate::abstraction::NativeAbstraction;
 use crate::arrays::{Output, array};
 use crate::failure::{Failure, Result};
+use crate::logs_on_disk::LogsOnDisk;
 use crate::recordings::{NativeSource, SharedSource};
 use crate::robot::NativeRobot;
 use crate::watched::watched;
@@ -182,21 +184,31 @@ impl Wanted {
     }
 }
 
-/// Compares recordings with a model's reachable sets, and returns the answer as JSON.
+/// Compares recordings with a model's reachable sets, and returns the answer as JSON. Logs that
+/// leave them are read again at `paths` and of `runs`, for why.
 #[pyfunction]
-#[pyo3(signature = (model, source, suites, settings, progress=None))]
+#[pyo3(signature = (model, source, suites, settings, paths, runs, progress=None))]
+#[allow(clippy::too_many_arguments)]
 pub(crate) fn check(
     py: Python<'_>,
     model: String,
     source: PyRef<'_, NativeSource>,
     suites: Vec<String>,
     settings: String,
+    paths: Vec<PathBuf>,
+    runs: Option<PyRef<'_, NativeSource>>,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<String> {
-    let source = source.source.clone();
+    let (source, runs) = (source.source.clone(), runs.map(|runs| runs.source.clone()));
     let wanted = Wanted { model, source, suites, settings, keep: Keep::Needed };
     watched(py, progress.as_ref(), move |watch| {
-        let check = wanted.open(watch)?.check()?;
+        let opened = wanted.open(watch)?;
+        let mut check = opened.check()?;
+        if !check.holds() {
+            let logs = LogsOnDisk::new(paths, runs.as_ref())?;
+            let causes = unexplained_by_model(&opened.model, &logs.paths);
+            check = check.explained_by(causes.map_err(|error| logs.named(error))?);
+        }
         Ok(serde_json::to_string(&check).expect("a check has string keys"))
     })
 }

@@ -377,3 +377,16 @@ def test_columns_and_logs_that_do_not_fit_are_refused(
     (tmp_path / "run.mcap").write_bytes(b"no log")
     with pytest.raises(rt.ReachtubeError, match="neither MCAP nor SQLite"):
         rt.model(arm, tmp_path, "motor")
+
+
+@pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
+def test_a_check_says_by_how_much_torques_come_late(
+    built: rt.BuiltModel, logs: list[rt.Run]
+) -> None:
+    late = [
+        rt.Run(run.t[15:], run.q[15:], run.qd[15:], run.tau[:-15], motion=f"late {k}")
+        for k, run in enumerate(logs)
+    ]
+    check = built.model.check(late)
+    causes = [finding.text for finding in check.findings if finding.code == "cause"]
+    assert not check and len(causes) == 1 and "60 ms later" in causes[0]
