@@ -73,7 +73,16 @@ pub fn prepared(
         }
     }
     let logs = prepare_for(&raw, &robot, *torque, &settings, cut_off.unwrap_or(f64::INFINITY))?;
-    let (from_start, origins) = (window.is_none(), &origins_of(&raw));
+    let mut origins = origins_of(&raw);
+    // A copy without some samples, or a log that overlaps, is no other one than the model's.
+    for log in &raw {
+        if let (Some(own), Some(origin)) =
+            (model.log_with_samples_of(&log.run), origins.get_mut(&log.name))
+        {
+            origin.sha256 = own.into();
+        }
+    }
+    let (from_start, origins) = (window.is_none(), &origins);
     let longest = logs.iter().map(|log| log.len() as f64 * log.step).fold(0.0, f64::max);
     let simulated = any_simulated(raw.iter().map(|log| &*log.file));
     let prepared =

@@ -17,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::findings::warning;
 use crate::held_out::Recording;
 use crate::kinds::{MotionType, motions};
+use crate::one_motion::{link_notes, links};
 use crate::steps::data_digest;
 use crate::windows::Origin;
 
@@ -64,7 +65,11 @@ impl Sorted {
             let (rest, one) = (count(MotionType::Rest), count(MotionType::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
-        let names = motions(&moving.iter().map(|log| &***log).collect::<Vec<&RawLog>>());
+        let all: Vec<&RawLog> = raw.iter().map(|log| &**log).collect();
+        let links = links(&all);
+        let names = motions(&all, &links).into_iter().zip(&kinds);
+        let names = names.filter(|(_, kind)| **kind == MotionType::Motion).map(|(name, _)| name);
+        let names: Vec<String> = names.collect();
         let digest = data_digest(&raw, &names);
         let distinct = names.iter().collect::<BTreeSet<_>>().len();
         chooser.choose(
@@ -83,10 +88,12 @@ impl Sorted {
         let motions = recordings.collect();
         let [rest, one_joint] = [MotionType::Rest, MotionType::OneJoint]
             .map(|kind| of(kind).into_iter().map(entry).collect());
-        let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
+        let [joined, shared] = link_notes(&all, &links);
+        let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).chain(joined).collect();
         let findings =
             raw.iter().flat_map(|log| log.moved.iter().map(|text| warning(Code::TurnsMoved, text)));
-        let findings = copies.into_iter().chain(findings).collect();
+        let shared = shared.map(|text| warning(reachtube_conform::Code::Recordings, &text));
+        let findings = copies.into_iter().chain(shared).chain(findings).collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         Ok(Self { rest, one_joint, motions, notes, findings, simulated, digest })
     }
@@ -196,7 +203,8 @@ pub(crate) fn unknown_warmth<'a>(logs: &[&'a RawLog], by_temperature: bool) -> O
 
 /// Returns the motion and the SHA-256 of each log, and whether the robot rests in it, by its name.
 pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, Origin> {
-    let logs = raw.iter().zip(motions(&raw.iter().collect::<Vec<_>>()));
+    let all: Vec<&RawLog> = raw.iter().collect();
+    let logs = raw.iter().zip(motions(&all, &links(&all)));
     let origin = |log: &RawLog, motion| Origin {
         motion,
         sha256: log.run.sha256.clone(),
