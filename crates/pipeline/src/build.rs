@@ -2,7 +2,7 @@ use std::path::Path;
 
 use reachtube_arm::Equations;
 use reachtube_conform::model::LogRecord;
-use reachtube_conform::{Answer, FitSettings, Group, Progress};
+use reachtube_conform::{Answer, FitSettings, Group, Model, Progress};
 use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, check_window};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
@@ -142,8 +142,8 @@ struct Decided<'a> {
 }
 
 impl Decided<'_> {
-    /// Returns the records of the logs that the model is made of, and of the held-out logs.
-    fn logs(&self) -> Vec<LogRecord> {
+    /// Returns the model with its preparation, the logs that it is made of, and the held-out logs.
+    fn recorded(&self, model: Model, preparation: Preparation) -> Model {
         let one_joint = self.evidence.one_joint.iter().filter_map(|entry| match entry {
             LogEntry::Recording(log) => Some((log, false)),
             _ => None,
@@ -151,7 +151,8 @@ impl Decided<'_> {
         let kept = self.split.kept.iter().map(|recording| (&recording.log, false));
         let held_out = self.split.held_out.iter().map(|recording| (&recording.log, true));
         let all = one_joint.chain(kept).chain(held_out);
-        all.map(|(log, held_out)| LogRecord::of(&log.run, held_out)).collect()
+        let logs = all.map(|(log, held_out)| LogRecord::of(&log.run, held_out)).collect();
+        model.with_preparation(preparation).with_logs(logs)
     }
 
     /// Chooses the horizon, finds the sets, and compares them with what was held out. `read` are
@@ -183,8 +184,7 @@ impl Decided<'_> {
         let without = || WithoutModel::new(&trial, &recordings, horizon, &foretold);
         let without_model = (!trial.equations.is_kinematic()).then(without).transpose()?;
         let choices = &chooser.choices;
-        let preparation = preparation(choices, torque);
-        answer.model = answer.model.with_preparation(preparation).with_logs(self.logs());
+        answer.model = self.recorded(answer.model, preparation(choices, torque));
         let better = without_model.as_ref().filter(|without| !without.is_model_better());
         let wide = TooWide { given, choices, own: (&trial, &recordings), tried: &horizons, better };
         // What contradicts the robot is to be mended first: no choice can.

@@ -67,9 +67,9 @@ impl TimeShift {
 /// They are the 64 moving samples with the smallest hashes, so that they are as good as random, and
 /// the same in a copy. A recording with a part p of the samples has
 /// about 64 p of them, and is recognised from 3 on, at one shift of the time: for p = 1/5 in all
-/// but one case in 10,000, for p = 1/10 in 96 %, for p = 1/20 in 62 %. Another recording is taken for
-/// one that shares samples if 3 of its positions and torques are equal by chance, at one shift,
-/// after rounding to 1e-5 rad and 1e-3 N m.
+/// but one case in 10,000, for p = 1/10 in 96 %, for p = 1/20 in 62 %. A recording that shares none
+/// is taken for one that does if positions and torques of 3 samples, rounded to 1e-5 rad and
+/// 1e-3 N m, are equal by chance at one shift.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RowSketch {
