@@ -187,7 +187,9 @@ class BuiltModel(Record):
         """Write what ``reachtube model --out`` writes.
 
         The files are ``model.json``, ``robot.toml``, ``choices.toml``, ``page/report.html``, and
-        ``held-out/report.html`` about the motions that were held out.
+        ``held-out/report.html`` about the motions that were held out. A ``model.json`` that is
+        replaced hands on the number of models that were compared with the same motions; the summary
+        and the pages count this model alone.
 
         Parameters
         ----------
@@ -199,6 +201,8 @@ class BuiltModel(Record):
         files = {Path(folder) / name: text for name, text in self._files.items()}
         for path in files:
             check_new(path, force=force)
+        model = Path(folder) / "model.json"
+        files[model] = _reachtube.among_others(files[model], fspath(model))
         for path, text in files.items():
             write_new(path, text, force=force)
 

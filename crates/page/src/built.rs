@@ -50,7 +50,7 @@ pub fn built_pages(built: &Built) -> Result<Vec<(&'static str, Page)>> {
     own.verdict.words = as_sentence(&built.verdict());
     own.verdict.useful = Some(built.is_useful());
     // What follows for new motions follows from all that was held out, and not from an excerpt.
-    let new_motions = vec![as_sentence(&format!("new motions: {}", built.held_out.next_motion))];
+    let new_motions = vec![as_sentence(&format!("new motions: {}", built.next_motion()))];
     own.trust.clone_from(&new_motions);
     let findings = built.findings.iter().map(|finding| finding.written_for(FrontEnd::Choices));
     own.verdict.warnings.splice(0..0, findings);

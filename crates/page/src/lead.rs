@@ -54,7 +54,7 @@ pub(super) fn of_built(built: &Built, lead: &mut Lead) {
     lead.facts.extend(built.allowance_words().map(|words| ("Allowance".into(), words)));
     let without = built.without_model.as_ref().map(WithoutModel::words);
     lead.facts.extend(without.map(|words| ("Without a model".into(), words)));
-    lead.facts.push(("New motions".into(), built.held_out.next_motion.clone()));
+    lead.facts.push(("New motions".into(), built.next_motion()));
     if let Some((figure, caption)) = over_horizons(built) {
         (lead.figure, lead.caption) = (Some(figure), caption);
     }

@@ -2,9 +2,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use reachtube_arm::Equations;
-use reachtube_conform::{Answer, FitSettings, Group, Progress};
+use reachtube_conform::model::LogRecord;
+use reachtube_conform::{Answer, FitSettings, Group, Model, Progress};
 use reachtube_finding::{Finding, Severity};
-use reachtube_identify::prepare::{PrepareSettings, RawLog, check_window};
+use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, check_window};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
@@ -132,6 +133,16 @@ fn refuse_unknown_warmth(given: &Choices, split: &Split) -> Result<()> {
     })
 }
 
+impl Built {
+    /// Returns the answer with a bound for new motions that counts the models which the file `path`
+    /// had before, if some of the same motions were held out from them.
+    #[must_use]
+    pub fn among_others(mut self, path: &Path) -> Self {
+        self.answer.model = self.answer.model.among_others(path);
+        self
+    }
+}
+
 /// A job whose motions are split and whose robot is chosen.
 struct Decided<'a> {
     /// The robot as described.
@@ -142,6 +153,19 @@ struct Decided<'a> {
 }
 
 impl Decided<'_> {
+    /// Returns the model with its preparation, the logs that it is made of, and the held-out logs.
+    fn recorded(&self, model: Model, preparation: Preparation) -> Model {
+        let one_joint = self.evidence.one_joint.iter().filter_map(|entry| match entry {
+            LogEntry::Recording(log) => Some((log, false)),
+            _ => None,
+        });
+        let kept = self.split.kept.iter().map(|recording| (&recording.log, false));
+        let held_out = self.split.held_out.iter().map(|recording| (&recording.log, true));
+        let all = one_joint.chain(kept).chain(held_out);
+        let logs = all.map(|(log, held_out)| LogRecord::of(&log.run, held_out)).collect();
+        model.with_preparation(preparation).with_logs(logs)
+    }
+
     /// Chooses the horizon, finds the sets, and compares them with what was held out. `read` are
     /// the notes and findings of the reading.
     fn finish(
@@ -171,7 +195,7 @@ impl Decided<'_> {
         let without = || WithoutModel::new(&trial, &recordings, horizon, &foretold);
         let without_model = (!trial.equations.is_kinematic()).then(without).transpose()?;
         let choices = &chooser.choices;
-        answer.model = answer.model.with_preparation(preparation(choices, torque));
+        answer.model = self.recorded(answer.model, preparation(choices, torque));
         let better = without_model.as_ref().filter(|without| !without.is_model_better());
         let wide = TooWide { given, choices, own: (&trial, &recordings), tried: &horizons, better };
         // What contradicts the robot is to be mended first: no choice can.

@@ -1,6 +1,7 @@
 use reachtube_arm::ArmModel;
 use std::collections::{BTreeMap, BTreeSet};
 
+use reachtube_conform::next_motion::next_motion_of_held_out;
 use reachtube_conform::{Answer, Check, CheckJob, Silent};
 use reachtube_finding::Finding;
 use reachtube_recordings::{MemoryRuns, RunSource};
@@ -37,9 +38,9 @@ pub struct HeldOut {
     /// The factor by which the radii of X0 and U would have to grow so that the sets enclose all
     /// motions that were held out, 1 where they do; `None` where none suffices.
     pub factor: Option<f64>,
-    /// What follows for the next motion, in a few words.
+    /// Whether the robot was identified from what is held out.
     #[serde(skip)]
-    pub next_motion: String,
+    is_seen: bool,
     /// Why the motions could not be compared, such as a nominal motion that runs away.
     pub failure: Option<String>,
 }
@@ -83,6 +84,17 @@ impl HeldOut {
     #[must_use]
     pub(crate) fn part_outside(&self) -> f64 {
         self.outside as f64 / self.rows.max(1) as f64
+    }
+
+    /// Returns what follows for the next motion, in a few words, from one of `models` models that
+    /// were compared with the same motions.
+    #[must_use]
+    pub(crate) fn next_motion(&self, models: usize) -> String {
+        match (&self.failure, self.is_seen) {
+            (Some(_), _) => "no guarantee: what was held out could not be compared".into(),
+            (None, true) => "no guarantee: the robot was identified from what is held out".into(),
+            (None, false) => next_motion_of_held_out(self.motions, self.factor, models),
+        }
     }
 
     /// Returns a finding where the sets do not carry over to what was held out.
@@ -137,12 +149,7 @@ impl HeldOut {
                     growth: growth(&check, n),
                     motions,
                     factor: check.factor_of_sets(),
-                    next_motion: match (&check.trust, are_whole) {
-                        (None, true) => {
-                            "no guarantee: the robot was identified from what is held out".into()
-                        }
-                        _ => check.next_motion_in_brief(motions),
-                    },
+                    is_seen: check.trust.is_none() && are_whole,
                     failure: None,
                 };
                 Ok((held_out, outside))
@@ -159,7 +166,7 @@ impl HeldOut {
             growth: vec![f64::INFINITY; joints],
             motions: None,
             factor: None,
-            next_motion: "no guarantee: what was held out could not be compared".into(),
+            is_seen: false,
             failure: Some(why.into()),
         }
     }

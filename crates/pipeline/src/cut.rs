@@ -11,6 +11,7 @@ use reachtube_recordings::{
 use reachtube_robot::Robot;
 
 use crate::error::Result;
+use crate::one_motion::{link_notes, links};
 use crate::sorted::{origins_of, read_logs, without_suite_note};
 use crate::stretches::{Use, in_stretches};
 use crate::windows::{Origin, Prepared, windows_of};
@@ -50,6 +51,8 @@ impl Cut {
         let mut notes: Vec<String> =
             raw.iter().flat_map(|log| log.moved.iter().chain(&log.notes).cloned()).collect();
         notes.extend(without_suite_note(&raw));
+        let all: Vec<&RawLog> = raw.iter().collect();
+        notes.extend(link_notes(&all, &links(&all)).into_iter().flatten());
         let whole = origins_of(&raw);
         let cut_off = match torque {
             Torque::Compensated => None,

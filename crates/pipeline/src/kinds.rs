@@ -3,6 +3,8 @@
 use reachtube_identify::prepare::RawLog;
 use reachtube_recordings::Run;
 
+use crate::one_motion::Join;
+
 /// A joint whose position stays within this range rests, rad or m.
 const REST: f64 = 0.01;
 
@@ -51,13 +53,21 @@ impl MotionType {
 }
 
 /// Returns the name of the motion of each recording, if the recording has none: recordings of the
-/// same motion have the name of the first.
-pub(crate) fn motions(logs: &[&RawLog]) -> Vec<String> {
+/// same motion have the name of the first, and so have all motions of which `links` joins two
+/// recordings.
+pub(crate) fn motions(logs: &[&RawLog], links: &[Join]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for (index, log) in logs.iter().enumerate() {
         let same = || (0..index).find(|other| is_repeat(&logs[*other].run, &log.run));
         let unnamed = || same().map_or(&log.name, |other| &names[other]);
         names.push(log.motion.as_ref().unwrap_or_else(unnamed).clone());
+    }
+    for Join { first, later, .. } in links {
+        let [first, later] = [*first, *later].map(|index| names[index].clone());
+        let place = |name: &String| names.iter().position(|other| other == name);
+        let [kept, joined] =
+            if place(&first) <= place(&later) { [first, later] } else { [later, first] };
+        names.iter_mut().filter(|name| **name == joined).for_each(|name| name.clone_from(&kept));
     }
     names
 }
@@ -127,6 +137,11 @@ mod tests {
             log("d", run([0.5, 0.3], 0.0)),
         ];
         logs[3].motion = Some("D".into());
-        assert_eq!(motions(&logs.iter().collect::<Vec<_>>()), ["a", "a", "c", "D"]);
+        let logs: Vec<&RawLog> = logs.iter().collect();
+        assert_eq!(motions(&logs, &[]), ["a", "a", "c", "D"]);
+        // Motions are joined in any order, with all their recordings.
+        let link = |first, later| Join { first, later, equal: None };
+        assert_eq!(motions(&logs, &[link(2, 3)]), ["a", "a", "c", "c"]);
+        assert_eq!(motions(&logs, &[link(2, 3), link(1, 3)]), ["a"; 4]);
     }
 }

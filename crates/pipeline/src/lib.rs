@@ -25,6 +25,7 @@ mod kinds;
 mod live;
 mod mean_position;
 mod noise;
+mod one_motion;
 #[cfg(test)]
 mod pendulum;
 mod planned;

@@ -101,8 +101,16 @@ impl Later {
         let whole = read_logs(paths, &robot, &settings)?;
         let (from_start, torque) = (window.is_none(), *torque);
         let cut_off = cut_off.unwrap_or(f64::INFINITY);
-        let (raw, origins, notes) =
-            in_stretches(&whole, &origins_of(&whole), Use { cut_off, from_start })?;
+        let mut origins = origins_of(&whole);
+        // A copy without some samples, or a log that overlaps, is no other one than the model's.
+        for log in &whole {
+            if let (Some(own), Some(origin)) =
+                (model.log_with_samples_of(&log.run), origins.get_mut(&log.name))
+            {
+                origin.sha256 = own.into();
+            }
+        }
+        let (raw, origins, notes) = in_stretches(&whole, &origins, Use { cut_off, from_start })?;
         Ok(Self { raw, robot, settings, origins, notes, from_start, torque, cut_off })
     }
 

@@ -18,6 +18,7 @@ use crate::findings::warning;
 use crate::flaws::find_flaws;
 use crate::held_out::Recording;
 use crate::kinds::{MotionType, motions};
+use crate::one_motion::{link_notes, links};
 use crate::steps::data_digest;
 use crate::windows::Origin;
 
@@ -66,7 +67,11 @@ impl Sorted {
             let (rest, one) = (count(MotionType::Rest), count(MotionType::OneJoint));
             return Err(Error::NoMotion { recordings: raw.len(), rest, one });
         }
-        let names = motions(&moving.iter().map(|log| &***log).collect::<Vec<&RawLog>>());
+        let all: Vec<&RawLog> = raw.iter().map(|log| &**log).collect();
+        let links = links(&all);
+        let names = motions(&all, &links).into_iter().zip(&kinds);
+        let names = names.filter(|(_, kind)| **kind == MotionType::Motion).map(|(name, _)| name);
+        let names: Vec<String> = names.collect();
         let digest = data_digest(&raw, &names);
         let distinct = names.iter().collect::<BTreeSet<_>>().len();
         chooser.choose(
@@ -85,10 +90,12 @@ impl Sorted {
         let motions = recordings.collect();
         let [rest, one_joint] = [MotionType::Rest, MotionType::OneJoint]
             .map(|kind| of(kind).into_iter().cloned().collect());
-        let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).collect();
+        let [joined, shared] = link_notes(&all, &links);
+        let notes = raw.iter().flat_map(|log| log.notes.iter().cloned()).chain(joined).collect();
         let findings =
             raw.iter().flat_map(|log| log.moved.iter().map(|text| warning(Code::TurnsMoved, text)));
-        let findings = copies.into_iter().chain(findings).collect();
+        let shared = shared.map(|text| warning(reachtube_conform::Code::Recordings, &text));
+        let findings = copies.into_iter().chain(shared).chain(findings).collect();
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         Ok(Self { all: raw, rest, one_joint, motions, notes, findings, simulated, digest })
     }
@@ -133,11 +140,14 @@ pub(crate) fn read_logs(
     robot: &Robot,
     settings: &PrepareSettings,
 ) -> Result<Vec<RawLog>> {
+    // In which order they are named makes no difference.
+    let mut paths = paths.to_vec();
+    paths.sort_unstable();
     let entries: Vec<LogEntry> = paths.iter().cloned().map(LogEntry::from).collect();
     // Gaps are looked for in what was read.
     let settings = PrepareSettings { max_gap: Some(f64::INFINITY), ..settings.clone() };
     let mut raw = read(&entries, Path::new(""), robot, &settings)?;
-    let known = indexed(&raw, paths)?;
+    let known = indexed(&raw, &paths)?;
     for log in &mut raw {
         if let Some(RunEntry { motion, suite, order, .. }) = known.get(&log.file).cloned() {
             let is_in_order = suite.is_some();
@@ -203,7 +213,8 @@ pub(crate) fn unknown_warmth<'a>(logs: &[&'a RawLog], by_temperature: bool) -> O
 
 /// Returns the motion and the SHA-256 of each log, and whether the robot rests in it, by its name.
 pub(crate) fn origins_of(raw: &[RawLog]) -> BTreeMap<String, Origin> {
-    let logs = raw.iter().zip(motions(&raw.iter().collect::<Vec<_>>()));
+    let all: Vec<&RawLog> = raw.iter().collect();
+    let logs = raw.iter().zip(motions(&all, &links(&all)));
     let origin = |log: &RawLog, motion| Origin {
         motion,
         sha256: log.run.sha256.clone(),
@@ -253,7 +264,8 @@ mod tests {
             std::fs::write(path.join("runs.csv"), index).unwrap();
         }
         let robot = pendulum();
-        let raw = read_logs(&paths, &robot, &PrepareSettings::default()).unwrap();
+        let backward: Vec<PathBuf> = paths.iter().rev().cloned().collect();
+        let raw = read_logs(&backward, &robot, &PrepareSettings::default()).unwrap();
         let own = raw.iter().map(|log| (log.name.as_str(), log.motion.as_deref(), log.order));
         let own: Vec<_> = own.collect();
         assert_eq!(own, [("a_run", Some("A"), Some(3)), ("b_run", Some("B"), Some(8))]);

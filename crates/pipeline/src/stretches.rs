@@ -105,6 +105,9 @@ pub(crate) fn left_out<'a>(logs: impl IntoIterator<Item = &'a RawLog>, what: Use
     logs.into_iter().filter_map(of_log).collect()
 }
 
+/// Stretches of recordings, the log of each by its name, and notes about what is left out.
+pub(crate) type InStretches = (Vec<RawLog>, BTreeMap<String, Origin>, Vec<String>);
+
 /// Returns the stretches of recordings, with the log of each by its name as in `whole`, and notes
 /// about what is left out.
 ///
@@ -115,7 +118,7 @@ pub(crate) fn in_stretches(
     raw: &[RawLog],
     whole: &BTreeMap<String, Origin>,
     what: Use,
-) -> Result<(Vec<RawLog>, BTreeMap<String, Origin>, Vec<String>)> {
+) -> Result<InStretches> {
     check_used(raw, what)?;
     let (mut logs, mut origins) = (Vec::new(), BTreeMap::new());
     for log in raw {

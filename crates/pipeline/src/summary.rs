@@ -88,7 +88,7 @@ impl Built {
             summary.facts.retain(|(name, _)| name != LEFT_OUT);
             summary.fact("allowance for motions left out in turn", allowance);
         }
-        summary.fact(NEW_MOTIONS, &self.held_out.next_motion);
+        summary.fact(NEW_MOTIONS, self.next_motion());
         for finding in &self.remedies {
             summary.fact("would help", finding.written_for(FrontEnd::Choices));
         }
@@ -110,6 +110,12 @@ impl Built {
             count => format!(" ({count} more likewise)"),
         };
         Some(format!("warning: {}{more}", first.text))
+    }
+
+    /// Returns what follows for the next motion, in a few words.
+    #[must_use]
+    pub fn next_motion(&self) -> String {
+        self.held_out.next_motion(1 + self.answer.model.replaced)
     }
 
     /// Returns how many rows that were held out lie outside the sets, in a few words.

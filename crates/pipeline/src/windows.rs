@@ -75,7 +75,8 @@ impl Prepared<'_> {
         let mut runs = MemoryRuns::default();
         for index in (0..count).map(|k| k * all.len() / count) {
             let window = &all[index];
-            let motion = match is_single && self.divides && !self.from_start {
+            let is_part = is_single && self.divides && !self.from_start;
+            let motion = match is_part {
                 true => format!("{} part {}", motion(index), 1 + PARTS * index / all.len()),
                 false => motion(index).to_string(),
             };
@@ -85,6 +86,7 @@ impl Prepared<'_> {
                 let entry = runs.push(name, Some(&window.suite), Some(&motion), run);
                 entry.order = window.log.order.unwrap_or(entry.order);
                 entry.simulated = self.simulated;
+                entry.is_part = is_part;
                 let origin = self.origins.get(&window.motion);
                 entry.origin = origin.map(|log| log.sha256.clone());
                 entry.at_rest = origin.is_some_and(|log| log.at_rest);

@@ -37,6 +37,8 @@ pub struct RunEntry {
     pub origin: Option<String>,
     /// Whether the robot rests in the log that the run was cut from.
     pub at_rest: bool,
+    /// Whether its motion is one of the parts of a single motion.
+    pub is_part: bool,
     /// Place in the order in which the runs of the suite were recorded, from 1.
     pub order: u64,
     /// Line in `runs.csv`, or number of a run in memory, from 1.

@@ -104,6 +104,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         forget(&journal);
         in_settings(error, args)
     })?;
+    let built = built.among_others(&args.out.join("model.json"));
     output::notes(&built.notes);
     let mut written = Vec::new();
     for (name, text) in built.files() {

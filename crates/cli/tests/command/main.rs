@@ -19,6 +19,7 @@ mod monitor;
 mod newcomer;
 mod nonlinear;
 mod notions;
+mod one_motion;
 mod options;
 mod output_schema;
 mod outputs;

@@ -12,7 +12,7 @@ use crate::robot_logs::{JOINT_STATE, Message, SECOND, State, bag, mcap_bytes};
 use crate::short::is_short;
 
 /// A lab with `pendulum.toml`, whose mass is wrong, and four logs in `logs`.
-fn lab() -> Lab {
+pub(super) fn lab() -> Lab {
     let lab = pendulum_lab();
     std::fs::create_dir(lab.path("logs")).unwrap();
     for name in ["a", "b", "c"] {

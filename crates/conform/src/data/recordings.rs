@@ -69,10 +69,14 @@ impl Recordings {
         self.suites.iter().filter(is_among).map(|suite| suite.entry.name.as_str()).collect()
     }
 
-    pub(crate) fn are_of_one_log(&self) -> bool {
-        let mut origins = self.suites.iter().flat_map(|suite| &suite.runs).map(|run| &run.origin);
-        let first = origins.next().and_then(Option::as_ref);
-        first.is_some() && origins.all(|other| other.as_ref() == first)
+    /// Returns what all recordings are parts of, if they are: one log, or one motion.
+    pub(crate) fn are_parts_of(&self) -> Option<&'static str> {
+        let mut runs = self.suites.iter().flat_map(|suite| &suite.runs);
+        let first = runs.clone().next()?;
+        match first.origin.is_some() && runs.clone().all(|run| run.origin == first.origin) {
+            true => Some("one log"),
+            false => runs.all(|run| run.is_part).then_some("one motion"),
+        }
     }
 
     /// Returns the number of runs.

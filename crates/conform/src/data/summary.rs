@@ -42,6 +42,9 @@ pub struct RunSummary {
     /// Whether the robot rests in that log.
     #[serde(skip)]
     pub at_rest: bool,
+    /// Whether its motion is one of the parts of a single motion.
+    #[serde(skip)]
+    pub is_part: bool,
     /// The standard deviation of the noise in each state, 2n, as
     /// [`noise_deviations`](reachtube_recordings::noise_deviations) estimates it, and at least what
     /// was measured before a filter.
@@ -65,6 +68,7 @@ impl RunSummary {
             sha256: run.sha256.clone(),
             origin: entry.origin.clone(),
             at_rest: entry.at_rest,
+            is_part: entry.is_part,
             noise: noise(entry, run),
             notes: run_notes(entry, run),
         }

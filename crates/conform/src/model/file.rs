@@ -26,7 +26,7 @@ use crate::data::setup::{Drive, Setup};
 use crate::data::signals::Signals;
 use crate::error::{Error, Result};
 use crate::fit::record::FitRecord;
-use crate::model::records::DataRecord;
+use crate::model::records::{DataRecord, LogRecord, is_zero};
 use crate::next_motion::any_run::AnyRun;
 use crate::next_motion::calibration::Calibration;
 use crate::next_motion::trends::Trend;
@@ -175,6 +175,13 @@ pub struct Model {
     /// SHA-256 of the recordings that the drive was identified from or fitted to.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub seen: Vec<String>,
+    /// The logs that a pipeline made it of or held out from it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub logs: Vec<LogRecord>,
+    /// Number of models with other sets that the file had before, and that some of the same
+    /// recordings calibrated or were held out from. Bounds count them.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub replaced: usize,
     /// The recordings.
     pub data: DataRecord,
     /// The findings that the command prints beside the model. They follow from the rest and are
@@ -234,6 +241,8 @@ impl Model {
             signals: problem.signals().clone(),
             drive: problem.setup().drive.record(dynamics),
             seen: problem.setup().drive.seen().to_vec(),
+            logs: Vec::new(),
+            replaced: 0,
             data: DataRecord::new(problem),
             findings: IgnoredAny,
             sha256: String::new(),

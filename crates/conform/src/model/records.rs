@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use reachtube_recordings::{RowSketch, Run};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -11,6 +12,9 @@ use crate::data::recordings::Recordings;
 use crate::data::settings::NominalStart;
 use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
+
+/// Records of logs that share samples have kept at least this many of them.
+const FEWEST: usize = 3;
 
 /// The recordings that a model encloses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -69,6 +73,33 @@ pub struct RunRecord {
     pub samples: usize,
     /// Time from the first to the last of them, s.
     pub duration: f64,
+}
+
+/// A log that a model was made of, or that was held out from it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LogRecord {
+    /// Its SHA-256.
+    pub sha256: String,
+    /// Whether it was held out from every choice.
+    pub held_out: bool,
+    /// Some of its samples.
+    pub rows: RowSketch,
+}
+
+impl LogRecord {
+    /// Makes the record of a log.
+    #[must_use]
+    pub fn of(run: &Run, held_out: bool) -> Self {
+        Self { sha256: run.sha256.clone(), held_out, rows: RowSketch::of(run) }
+    }
+
+    /// Returns whether both records are of one log, or of logs that share samples, as far as the
+    /// samples that both have kept show it.
+    pub(super) fn shares_samples(&self, other: &Self) -> bool {
+        let is_kept = |key: &&u32| other.rows.keys.contains(key);
+        self.sha256 == other.sha256 || self.rows.keys.iter().filter(is_kept).count() >= FEWEST
+    }
 }
 
 impl SuiteRecord {
@@ -153,6 +184,6 @@ impl DataRecord {
     }
 }
 
-fn is_zero(count: &usize) -> bool {
+pub(super) fn is_zero(count: &usize) -> bool {
     *count == 0
 }

@@ -59,8 +59,8 @@ impl Trust {
     pub fn of_fit(problem: &Problem, tight: &[Witness]) -> Self {
         let recordings = problem.recordings();
         let motions = Motions::independent(recordings);
-        if motions.count() > 1 && recordings.are_of_one_log() {
-            return Self::of_one_log("scenario");
+        if let (Some(whole), true) = (recordings.are_parts_of(), motions.count() > 1) {
+            return Self::of_one("scenario", whole);
         }
         let count = |least: f64| {
             let rows = tight.iter().filter(|witness| witness.radius > least);
@@ -209,8 +209,8 @@ impl Trust {
         if motions.count() == 0 {
             return Self::unknown(0, "the robot rests in all recordings".into());
         }
-        if motions.count() > 1 && recordings.are_of_one_log() {
-            return Self::of_one_log("hold-out");
+        if let (Some(whole), true) = (recordings.are_parts_of(), motions.count() > 1) {
+            return Self::of_one("hold-out", whole);
         }
         let violating = verdict.suites.iter().filter(|suite| !suite.holds());
         let violating = motions.count_of(violating.map(|suite| suite.suite.as_str()));
@@ -225,10 +225,10 @@ impl Trust {
         Self { deciding, violation_probability: bound, kind, ..unknown }
     }
 
-    /// Returns that there is no bound, since motions that were cut from one log are not
+    /// Returns that there is no bound, since motions that are parts of one log or motion are not
     /// independent.
-    fn of_one_log(bound: &str) -> Self {
-        let basis = format!("no {bound} bound: all motions are parts of one log");
+    fn of_one(bound: &str, whole: &str) -> Self {
+        let basis = format!("no {bound} bound: all motions are parts of {whole}");
         Self::unknown(1, basis)
     }
 

@@ -64,7 +64,10 @@ pub(crate) fn next_motion(trust: &Trust, set: &str, role: &str) -> Finding {
         let several = match m {
             1 => String::new(),
             m => {
-                format!(" This counts the {m} models in the folder that these motions calibrated.")
+                format!(
+                    " This counts the {m} models in the folder that these motions calibrated, and \
+                     models that were replaced."
+                )
             }
         };
         let text = format!(
