@@ -21,7 +21,7 @@ struct Squares {
 /// Returns the time by which the torques of n joints come later than the motion that they belong
 /// to, s; it is negative where they come earlier. `None` unless the lag explains much more of them,
 /// also in the half of each recording that did not choose it. Recordings whose time between samples
-/// is not that of the first are no evidence.
+/// differs from the first one's are no evidence.
 #[must_use]
 pub fn torque_lag(recordings: &[NeededTorques], joints: usize) -> Option<f64> {
     let step = recordings.first()?.step;
@@ -90,7 +90,7 @@ impl Squares {
         halves.iter().map(|half| self.halves[*half][lag][joint]).sum()
     }
 
-    /// Returns the part of the squares of a joint that a lag leaves of those without one.
+    /// Returns which part of the squares of a joint a lag leaves.
     fn part(&self, halves: &[usize], lag: usize, joint: usize) -> f64 {
         let without = self.of_joint(halves, self.longest, joint).max(f64::MIN_POSITIVE);
         self.of_joint(halves, lag, joint).max(f64::MIN_POSITIVE) / without

@@ -10,7 +10,8 @@
 //!   number and remedy.
 //!
 //! [`torque_lag`] finds by how much torques come later than the motion that they belong to,
-//! [`payload`] the body at the last link that a recording shows, and [`wrong_samples`] finds samples that cannot be right whatever the robot is.
+//! [`payload`] the body at the last link that a recording shows, and [`wrong_samples`] samples that
+//! cannot be right whatever the robot is.
 //!
 //! [`Agreement`] is the measure of how recorded torques follow the ones that a robot needs, and
 //! [`input`] what recorded torques mean for a robot.
@@ -41,7 +42,7 @@ pub use free_misfit::FreeMisfit;
 pub use hypothesis::{Columns, Hypothesis};
 pub use late::{remaining_lag, torque_lag};
 pub use needed::NeededTorques;
-pub use payload::{Payload, payload};
+pub use payload::{ShownPayload, payload};
 pub use reading::gains;
 pub use robot_misfit::RobotMisfit;
 pub use samples::{WrongSamples, wrong_samples};

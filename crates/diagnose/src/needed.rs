@@ -1,5 +1,5 @@
-/// The recorded torques of a recording beside the ones that its motion needs of a robot, in rows of n
-/// values at the same times. Both are filtered alike.
+/// Torques of a recording beside the ones that its motion needs of a robot, in rows of n values at
+/// the same times. Both are filtered alike.
 #[derive(Debug, Clone)]
 pub struct NeededTorques<'a> {
     /// Time between samples, s.

@@ -30,7 +30,7 @@ const RIDGE: f64 = 1e-6;
 
 /// A body at the last link that explains torques of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Payload {
+pub struct ShownPayload {
     /// Its mass, kg; negative if the last link has less than the robot's.
     pub mass: f64,
     /// The part of the squares of what is unexplained otherwise that it explains, in the halves of
@@ -42,7 +42,7 @@ pub struct Payload {
 /// `None` unless it explains at least half, also in the half of the recording that did not give
 /// it, and has some mass.
 #[must_use]
-pub fn payload(robot: &Robot, recording: &NeededTorques) -> Option<Payload> {
+pub fn payload(robot: &Robot, recording: &NeededTorques) -> Option<ShownPayload> {
     let n = robot.joint_count();
     let count = recording.recorded.len() / n;
     let samples: Vec<usize> = (0..count).step_by(count.div_ceil(SAMPLES).max(1)).collect();
@@ -53,7 +53,7 @@ pub fn payload(robot: &Robot, recording: &NeededTorques) -> Option<Payload> {
     let part = left / (halves[0].torques.norm_squared() + halves[1].torques.norm_squared());
     let mass = 0.5 * (first[0] + second[0]);
     let is_alike = first[0] * second[0] > 0.0;
-    (part < LEFT && is_alike).then_some(Payload { mass, explained: 1.0 - part })
+    (part < LEFT && is_alike).then_some(ShownPayload { mass, explained: 1.0 - part })
 }
 
 /// What is unexplained in some samples, and what the parameters of a body at the last link add.

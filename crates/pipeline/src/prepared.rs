@@ -75,7 +75,7 @@ pub(crate) struct Later {
     pub robot: Robot,
     pub settings: PrepareSettings,
     origins: BTreeMap<String, Origin>,
-    /// What is said of samples that are left out.
+    /// Notes about samples that are left out.
     notes: Vec<String>,
     /// Whether motions start where the recordings do.
     from_start: bool,

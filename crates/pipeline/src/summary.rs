@@ -61,7 +61,7 @@ impl Built {
         }
         // What was mended in the recordings comes before what was made of them.
         summary.verdict.splice(0..0, MENDED.iter().filter_map(|code| self.mended(*code)));
-        // What was found in the recordings is the cause; else the likeliest one is said.
+        // What was found in the recordings is the cause; else the likeliest one is printed.
         let of_recordings =
             |found: &&Finding| found.code == Code::Contradiction && !self.is_useful();
         let found = self.contradiction().or_else(|| self.findings.iter().find(of_recordings));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use reachtube_arm::ArmModel;
 use reachtube_conform::{Code, Model};
-use reachtube_diagnose::{NeededTorques, Payload, payload, remaining_lag, torque_lag};
+use reachtube_diagnose::{NeededTorques, ShownPayload, payload, remaining_lag, torque_lag};
 use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{PreparedLog, prepare};
 use reachtube_recordings::Torque;
@@ -88,9 +88,9 @@ impl Evidence<'_> {
     }
 }
 
-/// Returns what recordings show that the robot of a model leaves unexplained: a lag of their torques,
-/// or payloads. The recordings are read as [`prepared`](crate::prepared) does; the list is empty for a
-/// model that takes recordings as they are, or knows no torque.
+/// Returns what later recordings show that the robot of a model leaves unexplained: a lag of their
+/// torques, or payloads. They are read as by [`prepared`](crate::prepared). The list is empty for
+/// a model that takes recordings as they are, or has no use for torques.
 ///
 /// # Errors
 ///
@@ -143,23 +143,23 @@ fn lag_words(lag: f64) -> String {
     )
 }
 
-/// Returns what is said of payloads in recordings, if some show one.
+/// Returns a clause about payloads, if some recordings show one.
 fn payloads(robot: &Robot, logs: &[PreparedLog], needed: &[NeededTorques]) -> Option<String> {
     let mass: f64 = robot.inertial_parameters().iter().step_by(10).sum();
     let of_log = |(log, needed): (&PreparedLog, &NeededTorques)| {
         let found = payload(robot, needed)?;
         (found.mass.abs() > LEAST_MASS * mass).then(|| (log.name.clone(), found))
     };
-    let found: Vec<(String, Payload)> = logs.iter().zip(needed).filter_map(of_log).collect();
+    let found: Vec<(String, ShownPayload)> = logs.iter().zip(needed).filter_map(of_log).collect();
     let (heavier, lighter): (Vec<_>, Vec<_>) =
         found.into_iter().partition(|(_, payload)| payload.mass > 0.0);
     payload_words([&heavier, &lighter], logs.len())
 }
 
-/// Says which recordings, of all, have more at the last link than the robot, or than those that have
-/// less, and what that explains.
-fn payload_words([heavier, lighter]: [&[(String, Payload)]; 2], of: usize) -> Option<String> {
-    let mean = |found: &[(String, Payload)], value: &dyn Fn(&Payload) -> f64| {
+/// Returns a clause about the recordings, of all, whose last link is `heavier` than the robot's or
+/// than in `lighter` ones, and what that explains.
+fn payload_words([heavier, lighter]: [&[(String, ShownPayload)]; 2], of: usize) -> Option<String> {
+    let mean = |found: &[(String, ShownPayload)], value: &dyn Fn(&ShownPayload) -> f64| {
         found.iter().map(|(_, payload)| value(payload)).sum::<f64>() / found.len().max(1) as f64
     };
     let mass = |found| mean(found, &|payload| payload.mass);
