@@ -248,6 +248,7 @@ mod tests {
             order: None,
             notes: vec![],
             moved: vec![],
+            flaws: vec![],
             run,
         };
         runs.into_iter().enumerate().map(log).collect()
