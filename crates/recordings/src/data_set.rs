@@ -134,7 +134,13 @@ fn csv_files(folder: &Path) -> Vec<PathBuf> {
             let path = entry.path();
             match entry.file_type() {
                 Ok(kind) if kind.is_dir() => csv_files(&path),
-                Ok(_) if path.extension().is_some_and(|extension| extension == "csv") => vec![path],
+                Ok(_)
+                    if path
+                        .extension()
+                        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) =>
+                {
+                    vec![path]
+                }
                 _ => Vec::new(),
             }
         })

@@ -23,6 +23,8 @@ const PLAUSIBLE_RATIO: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 const TIME_UNITS: [(&str, f64); 3] =
     [("milliseconds", 1e-3), ("microseconds", 1e-6), ("nanoseconds", 1e-9)];
 
+const OPPOSITE: &str = "qd is the slope of q with the opposite sign";
+
 /// Revolutions per minute in 1 rad/s.
 const RPM: f64 = 30.0 / PI;
 
@@ -115,12 +117,15 @@ pub(crate) fn time_defect(path: &Path, run: &Run) -> Option<Defect> {
 /// Panics if there are fewer axes than joints of the run.
 #[must_use]
 pub fn check_limits(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
+    let furthest = largest_magnitudes(&run.states, run.dimension());
+    let beyond = beyond_limits(path, &furthest, axes);
     let mut defects = ratio_defects(path, run, axes);
     if defects.is_empty() {
         defects.extend(time_defect(path, run));
     }
-    let furthest = largest_magnitudes(&run.states, run.dimension());
-    defects.extend(beyond_limits(path, &furthest, axes));
+    // Positions in another unit jump by whole turns, whose slope has no sign.
+    defects.retain(|defect| beyond.is_empty() || !defect.problem.contains(OPPOSITE));
+    defects.extend(beyond);
     defects.extend(torque_defects(path, run, axes));
     defects.extend(dead_velocities(path, run, &furthest[run.joints..]));
     defects
@@ -192,8 +197,8 @@ fn ratio_defects(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
         } else if axes[joint].is_revolute && (slope * RPM - 1.0).abs() < UNIT_TOLERANCE {
             format!("q looks like {unit} and qd like revolutions per minute")
         } else if (slope + 1.0).abs() < UNIT_TOLERANCE {
-            let problem = "qd is the slope of q with the opposite sign".to_string();
-            return Some(joint_defect(path, joint, problem, "multiply the column of qd by -1"));
+            let remedy = "multiply the column of qd by -1";
+            return Some(joint_defect(path, joint, OPPOSITE.to_string(), remedy));
         } else {
             return None;
         };
@@ -221,8 +226,13 @@ fn beyond_limits(path: &Path, furthest: &[f64], axes: &[Axis]) -> Vec<Defect> {
             size(*furthest)
         );
         let remedy = format!(
-            "it may be in {}: give q in {unit}, or correct the limits in the robot's description",
-            axis.other_unit()
+            "it may be in {}: give q in {unit}{}, or correct the limits in the robot's description",
+            axis.other_unit(),
+            if axis.is_revolute {
+                " (`model` and `prepare` take `--columns angle=deg`)"
+            } else {
+                ""
+            }
         );
         let is_far = far(*furthest, low.abs().max(high.abs()));
         is_far.then(|| joint_defect(path, joint, problem, &remedy))

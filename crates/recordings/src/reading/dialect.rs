@@ -10,14 +10,16 @@ use crate::text::{line_of, quoted};
 pub(super) struct Dialect {
     pub separator: u8,
     /// Byte at which the header starts.
-    start: usize,
-    /// Byte after the header's line.
+    pub start: usize,
+    /// Byte after the header's lines: one, or two where a line of units follows.
     end: usize,
-    /// Names of the columns; unnamed ones are empty, and left out at the end.
+    pub lines: u64,
+    /// Names of the columns, with the units of the line below; unnamed ones are empty, and left
+    /// out at the end.
     pub names: Vec<String>,
     /// Number of fields of the header, with unnamed ones at its end.
     fields: usize,
-    /// Line of the header, from 1.
+    /// Last line of the header, from 1.
     pub line: u64,
     /// Whether the header is a comment, as NumPy writes it.
     pub is_comment: bool,
@@ -50,12 +52,22 @@ impl Dialect {
             let remedy = "separate the columns by commas, semicolons, tabs or blanks";
             return Err(refused(line, problem, remedy));
         }
-        let (fields, end) = (names.len(), bytes.len().min(start + text.len() + 1));
+        let (fields, mut end) = (names.len(), bytes.len().min(start + text.len() + 1));
+        let below = &bytes[end..end + end_of_line(&bytes[end..])];
+        let units = units_of(below, separator, names.len());
+        for (name, unit) in names.iter_mut().zip(&units).filter(|(_, unit)| !unit.is_empty()) {
+            name.push_str(&format!(" [{unit}]"));
+        }
+        let lines = if units.is_empty() { 1 } else { 2 };
+        if lines == 2 {
+            end = bytes.len().min(end + below.len() + 1);
+        }
         while names.last().is_some_and(String::is_empty) {
             names.pop();
         }
         let is_comment = matches!(bytes[..start].last(), Some(b'#' | b' '));
-        Ok(Self { separator, start, end, names, fields, line, is_comment })
+        let line = line + lines - 1;
+        Ok(Self { separator, start, end, lines, names, fields, line, is_comment })
     }
 
     pub(super) fn separator_name(&self) -> &'static str {
@@ -92,14 +104,16 @@ impl Dialect {
         let bytes = &bytes[self.start..];
         let mut reader = reader(bytes, self.separator);
         let mut record = csv::ByteRecord::new();
-        let line = |position: Option<&csv::Position>| self.line - 1 + line_of(bytes, position);
-        let mut is_header = true;
+        let first = self.line - self.lines;
+        let line = |position: Option<&csv::Position>| first + line_of(bytes, position);
+        let mut header = self.lines;
         loop {
             let is_record = reader.read_byte_record(&mut record);
             if !is_record.map_err(|error| (line(error.position()), error.to_string()))? {
                 return Ok(());
             }
-            if std::mem::take(&mut is_header) {
+            if header > 0 {
+                header -= 1;
                 continue;
             }
             let mut fields: Vec<&[u8]> = record.iter().collect();
@@ -147,6 +161,10 @@ fn not_text(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return Some(("the file is UTF-16 text", "save it as CSV in UTF-8"));
     }
+    let first = bytes.iter().find(|byte| !byte.is_ascii_whitespace());
+    if let Some(b'{') = first {
+        return Some(("the file is JSON", "write the recording as CSV"));
+    }
     bytes.contains(&0).then_some(("the file is not text", "write the recording as CSV in UTF-8"))
 }
 
@@ -159,15 +177,17 @@ fn reader(bytes: &[u8], separator: u8) -> csv::Reader<&[u8]> {
         .from_reader(bytes)
 }
 
-/// Returns the first byte and the line of the header: the first line with text. A last
-/// comment `#` before numbers is the header, as NumPy writes it.
+/// Returns the first byte and the line of the header: the first line with text that does not name
+/// the separator, as spreadsheets write it (`sep=;`). A last comment `#` before numbers is the
+/// header, as NumPy writes it.
 fn header_at(bytes: &[u8]) -> Option<(usize, u64)> {
     let mut at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
     let mut comment = None;
     for (number, line) in (1..).zip(bytes[at..].split(|byte| *byte == b'\n')) {
         let text = line.trim_ascii();
         let is_comment = text.starts_with(b"#");
-        if !text.is_empty() && !is_comment {
+        let names_separator = text.len() < 6 && text.to_ascii_lowercase().starts_with(b"sep=");
+        if !text.is_empty() && !is_comment && !names_separator {
             let is_number = |name: &String| name.parse::<f64>().is_ok();
             let numbers = || fields(text, separator(text)).iter().any(is_number);
             return comment.filter(|_| numbers()).or(Some((at, number)));
@@ -179,6 +199,28 @@ fn header_at(bytes: &[u8]) -> Option<(usize, u64)> {
         at += line.len() + 1;
     }
     None
+}
+
+/// Words of a line of units.
+const UNITS: [&str; 27] = [
+    "s", "sec", "ms", "us", "ns", "rad", "deg", "°", "m", "mm", "rad/s", "deg/s", "°/s", "m/s",
+    "mm/s", "rpm", "rad/s^2", "rad/s²", "deg/s²", "nm", "n m", "n·m", "n*m", "n", "a", "ma", "°c",
+];
+
+/// Returns the units in the line below a header of as many fields; none if it is no line of units.
+fn units_of(line: &[u8], separator: u8, count: usize) -> Vec<String> {
+    let bare = |field: String| {
+        let is_bracket = |letter: char| matches!(letter, '[' | ']' | '(' | ')' | '"');
+        field.trim_matches(is_bracket).trim().to_string()
+    };
+    let units: Vec<String> = fields(line, separator).into_iter().map(bare).collect();
+    let is_unit = |unit: &String| {
+        let unit = unit.to_lowercase();
+        unit.is_empty() || unit == "-" || UNITS.contains(&unit.as_str())
+    };
+    let are_units = units.len() == count && units.iter().all(is_unit);
+    let is_named = units.iter().any(|unit| UNITS.contains(&unit.to_lowercase().as_str()));
+    if are_units && is_named { units } else { Vec::new() }
 }
 
 /// Returns the separator of a line outside quotes: semicolons before tabs, commas and blanks.
@@ -228,6 +270,12 @@ mod tests {
             ("# made by hand\n# t a b\n0 1 2\n", " ", vec!["t", "a", "b"]),
             ("\u{feff}t,a,\n", ",", vec!["t", "a"]),
             ("t , a\r1,2\r", ",", vec!["t", "a"]),
+            ("sep=;\nt;a,1\n", ";", vec!["t", "a,1"]),
+            ("SEP=,\r\nt,a\r\n", ",", vec!["t", "a"]),
+            ("t,q1,tau1\ns,rad,Nm\n0,1,2\n", ",", vec!["t [s]", "q1 [rad]", "tau1 [Nm]"]),
+            ("t;a\n[s];[deg]\n", ";", vec!["t [s]", "a [deg]"]),
+            ("t,a\ns,-\n", ",", vec!["t [s]", "a [-]"]),
+            ("t,a\nx,y\n", ",", vec!["t", "a"]),
         ];
         for (text, separator, names) in cases {
             let found = dialect(text).unwrap();
@@ -246,6 +294,7 @@ mod tests {
             ("\n\n", "no header"),
             ("1,2,3\n", "the header is missing"),
             ("abc\n", "one column"),
+            ("{\"t\": 0, \"q\": [1]}\n", "the file is JSON"),
         ] {
             let error = dialect(text).unwrap_err();
             assert!(error.contains(words), "{error}");
@@ -264,6 +313,15 @@ mod tests {
         };
         dialect.rows(text.as_bytes(), keep).unwrap();
         let expected = [(3, "1|2"), (6, "3|4"), (7, "5")];
+        let with_units = format!("sep=,\n{}", text.replacen("t,a\n", "t,a\ns,rad\n", 1));
+        let of_units = self::dialect(&with_units).unwrap();
+        let mut lines = Vec::new();
+        let keep_line = |line, _: &[&[u8]]| {
+            lines.push(line);
+            true
+        };
+        of_units.rows(with_units.as_bytes(), keep_line).unwrap();
+        assert_eq!((lines, of_units.line), (vec![5, 8, 9], 3));
         assert_eq!(rows, expected.map(|(line, text)| (line, text.to_string())));
     }
 

@@ -38,7 +38,7 @@ pub fn csv_files(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Error> {
         let entries = std::fs::read_dir(folder)?.flatten().map(|entry| entry.path());
         let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
         let is_recording = |path: &PathBuf| {
-            path.extension().is_some_and(|e| e == "csv")
+            path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
                 && path.file_name().is_some_and(|f| f != "runs.csv")
         };
         Ok([files.into_iter().filter(is_recording).collect(), folders])

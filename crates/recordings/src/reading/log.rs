@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 use super::assignment::{Assignment, TorqueKind, assign};
 use super::canonical::{content, is_recording, recording};
 use super::dialect::Dialect;
+use super::even_times::with_times;
 use super::joints::{Column, Joints, listed};
 use super::name::Quantity;
 use super::options::LoggedOptions;
@@ -78,15 +79,16 @@ pub struct Logged {
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn read_logged(files: &[PathBuf], options: &LoggedOptions) -> Result<Logged, Vec<Defect>> {
-    let contents: Vec<Vec<u8>> =
+    let mut contents: Vec<Vec<u8>> =
         files.iter().map(|file| content(file)).collect::<Result<_, _>>()?;
-    let dialect = |(file, bytes): (&PathBuf, &Vec<u8>)| Dialect::of(file, bytes);
-    let dialects: Vec<Dialect> = files
-        .iter()
-        .zip(&contents)
-        .map(dialect)
-        .collect::<Result<_, _>>()
-        .map_err(|defect| vec![*defect])?;
+    let mut digest = Sha256::new();
+    contents.iter().for_each(|bytes| digest.update(bytes));
+    let mut dialects = dialects(files, &contents)?;
+    if let Some(rate) = options.columns.rate {
+        let timed = contents.iter().zip(&dialects);
+        contents = timed.map(|(bytes, dialect)| with_times(bytes, dialect, rate)).collect();
+        dialects = self::dialects(files, &contents)?;
+    }
     let mut logged = match &dialects[..] {
         [only] if *options.columns == ColumnSettings::default() && is_recording(only) => {
             as_it_is(files, &contents[0], only, options)?
@@ -97,11 +99,14 @@ pub fn read_logged(files: &[PathBuf], options: &LoggedOptions) -> Result<Logged,
             log.logged(&contents)?
         }
     };
-    let mut digest = Sha256::new();
-    contents.iter().for_each(|bytes| digest.update(bytes));
     logged.run.sha256 = hex(&digest.finalize());
     logged.run.truncate(options.until);
     Ok(logged)
+}
+
+fn dialects(files: &[PathBuf], contents: &[Vec<u8>]) -> Result<Vec<Dialect>, Vec<Defect>> {
+    let all = files.iter().zip(contents).map(|(file, bytes)| Dialect::of(file, bytes));
+    all.collect::<Result<_, _>>().map_err(|defect| vec![*defect])
 }
 
 /// Reads a file in the format of recordings, and takes whole turns out.

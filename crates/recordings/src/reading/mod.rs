@@ -10,6 +10,7 @@ mod assignment;
 mod canonical;
 mod dialect;
 mod digits;
+mod even_times;
 mod files;
 mod joints;
 mod log;

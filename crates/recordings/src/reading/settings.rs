@@ -21,7 +21,7 @@ use super::unit::{AngleUnit, TimeUnit};
 /// assert_eq!(columns.first, Some(0));
 /// # Ok::<(), String>(())
 /// ```
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ColumnSettings {
     /// Positions.
@@ -39,6 +39,9 @@ pub struct ColumnSettings {
     /// Name of the column with the time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
+    /// Rate of evenly spaced samples that have no time, Hz.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rate: Option<f64>,
     /// Number of the first joint in the names, usually 0 or 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first: Option<usize>,
@@ -76,6 +79,11 @@ impl FromStr for ColumnSettings {
                 "tau" => out.tau = Some(value.into()),
                 "current" => out.current = Some(value.into()),
                 "time" => out.time = Some(value.into()),
+                "rate" => {
+                    let rate: Option<f64> = value.parse().ok().filter(|rate| *rate > 0.0);
+                    let wrong = || format!("rate={value} is no rate above 0 Hz");
+                    out.rate = Some(rate.filter(|rate| rate.is_finite()).ok_or_else(wrong)?);
+                }
                 "first" => {
                     let number = value.parse();
                     out.first = Some(number.map_err(|_| format!("first={value} is no number"))?);
@@ -85,7 +93,7 @@ impl FromStr for ColumnSettings {
                 other => {
                     return Err(format!(
                         "there is no key \"{other}\"; the keys are q, qd, tau, current, time, \
-                         first, time_unit and angle"
+                         rate, first, time_unit and angle"
                     ));
                 }
             }
@@ -101,13 +109,13 @@ mod tests {
 
     #[test]
     fn text_and_table_mean_the_same() {
-        let text = "q=pos_{}, qd = vel_{},time=clock,first=0,time_unit=ms,angle=deg";
+        let text = "q=pos_{}, qd = vel_{},time=clock,first=0,time_unit=ms,angle=deg,rate=125";
         let columns: ColumnSettings = text.parse().unwrap();
         assert_eq!(columns.qd.as_deref(), Some("vel_{}"));
         assert_eq!(columns.time.as_deref(), Some("clock"));
         assert_eq!(columns.time_unit, Some(TimeUnit::Milliseconds));
-        assert_eq!(columns.angle, Some(AngleUnit::Degrees));
-        for wrong in ["q", "speed=x", "first=x", "time_unit=h", "angle=grad"] {
+        assert_eq!((columns.angle, columns.rate), (Some(AngleUnit::Degrees), Some(125.0)));
+        for wrong in ["q", "speed=x", "first=x", "time_unit=h", "angle=grad", "rate=0", "rate=x"] {
             assert!(wrong.parse::<ColumnSettings>().is_err(), "{wrong}");
         }
     }

@@ -64,7 +64,8 @@ pub(super) fn time_columns(
                 None => format!("no column is the time; the header has {names}"),
             };
             let remedy = "name it in the settings: [columns] time = \"NAME\", or --columns \
-                          time=NAME";
+                          time=NAME; where samples without a time are evenly spaced, give their \
+                          rate in Hz: --columns rate=HZ";
             let defect = Defect::new(&files[file], Some(dialect.line), problem, remedy);
             Box::new(defect.of_kind(DefectKind::Header))
         })
