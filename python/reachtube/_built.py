@@ -288,7 +288,8 @@ def model(
         The weight of the pull of a fit, as for `conform`.
     columns
         Columns of CSV files with ambiguous names, as ``{"q": "pos_{}", "first": 0}``; the keys
-        are ``q``, ``qd``, ``tau``, ``current``, ``time``, ``first``, ``time_unit`` and ``angle``.
+        are ``q``, ``qd``, ``tau``, ``current``, ``time``, ``rate`` (Hz, for logs without a time),
+        ``first``, ``time_unit`` and ``angle``.
     topic
         Topics with joint states in MCAP and rosbag2; by default the only one that names joints of
         the robot.

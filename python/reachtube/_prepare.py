@@ -64,7 +64,8 @@ def prepare(
         ``"link"`` for torques behind the gear, which are the input of a robot without ``armature``.
     columns
         Columns of logs with ambiguous names, by the keys ``q``, ``qd``, ``tau``, ``current``,
-        ``time``, ``first``, ``time_unit`` and ``angle``, such as ``{"q": "pos_{}", "first": 0}``.
+        ``time``, ``rate``, ``first``, ``time_unit`` and ``angle``, such as
+        ``{"q": "pos_{}", "first": 0}``.
     max_gap
         Longest time between two samples, above 0 s.
 

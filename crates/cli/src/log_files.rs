@@ -18,7 +18,7 @@ pub(crate) const TIMES: Choices =
 #[derive(Debug, Args)]
 pub(crate) struct LogArguments {
     /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
-    /// also first=0, time_unit=ms and angle=deg
+    /// also rate=100 (Hz) for logs without a time, first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
     /// Topics with joint states in MCAP and rosbag2; several complement each other [default: the

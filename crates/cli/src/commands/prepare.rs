@@ -67,7 +67,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_parser = choice::<Torque>(TORQUES), requires = "compensate")]
     pub torque: Option<Torque>,
     /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
-    /// also first=0, time_unit=ms and angle=deg
+    /// also rate=100 (Hz) for logs without a time, first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
     /// Longest time between two samples, above 0 s [default: 10 times the usual sample time]

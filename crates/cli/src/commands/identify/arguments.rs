@@ -69,7 +69,7 @@ pub(crate) struct Arguments {
     #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
     pub max_gap: Option<f64>,
     /// Columns of CSV files whose names do not tell, such as q=pos_{},qd=vel_{},tau=m_{},time=t_1;
-    /// also first=0, time_unit=ms and angle=deg
+    /// also rate=100 (Hz) for logs without a time, first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
     /// Meaning of the recorded torques [default: motor, or as in the settings file]
