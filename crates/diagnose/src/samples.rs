@@ -287,7 +287,7 @@ mod tests {
             row[1] += if k == 100 { 0.4 } else { 0.0 };
             zeros(k, row);
         });
-        assert_eq!((both.len(), &both[1].rows[..]), (2, &[100..101][..]));
+        assert_eq!((both.len(), &both[1].rows[..]), (2, std::slice::from_ref(&(100..101))));
         let torque = |k: usize, row: &mut [f64]| row[4] *= if k % 200 == 9 { 1e3 } else { 1.0 };
         assert_eq!(rows(&torque), [9..10, 209..210, 409..410]);
         // A spike shows in velocities that were derived from the positions.
@@ -297,7 +297,7 @@ mod tests {
             101 => row[2] -= 25.0,
             _ => (),
         };
-        assert_eq!(rows(&derived), [100..101]);
+        assert_eq!(rows(&derived), std::slice::from_ref(&(100..101)));
     }
 
     #[test]
@@ -314,7 +314,7 @@ mod tests {
             }
         };
         let found = &found(still)[0];
-        assert_eq!((found.joint, &found.rows[..]), (Some(1), &[160..180][..]));
+        assert_eq!((found.joint, &found.rows[..]), (Some(1), std::slice::from_ref(&(160..180))));
         assert!(found.text.contains("after 20 samples that repeat the one before"), "{found:?}");
     }
 
