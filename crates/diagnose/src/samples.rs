@@ -108,7 +108,9 @@ fn jump(run: &Run, joint: usize, zeros: &[Range<usize>]) -> Option<WrongSamples>
     let limit = LEAST_JUMP.max(JUMP * usual_move.max(fastest * usual));
     let speed = |k: usize| 0.5 * (run.qd(k)[joint] + run.qd(k - 1)[joint]);
     let beyond = |k: usize| moved(k) - step(k) * speed(k);
-    let is_jump = |k: &usize| step(*k) < ONE_STEP * usual && beyond(*k).abs() > limit;
+    // A velocity may be wrong where the position is not.
+    let is_far = |k: usize| beyond(k).abs() > limit && moved(k).abs() > limit;
+    let is_jump = |k: &usize| step(*k) < ONE_STEP * usual && is_far(*k);
     let is_of_zeros = |k: &usize| zeros.iter().any(|rows| (rows.start..=rows.end).contains(k));
     let jumps: Vec<usize> = (1..run.len()).filter(|k| is_jump(k) && !is_of_zeros(k)).collect();
     let first = *jumps.first()?;

@@ -186,7 +186,10 @@ mod tests {
         let summary = Summary { importance: (0..30).rev().collect(), ..long(30, 1) };
         let text = summary.to_string();
         assert!(text.contains("  joint30 ") && !text.contains("  joint1 "), "{text}");
-        assert!(text.contains("\nwarning: 1 warning in the whole report\n"), "{text}");
+        assert!(text.contains("\nwarning: U reaches"), "the first warning stays: {text}");
+        let text = long(30, 2).to_string();
+        assert!(text.contains("\nwarning: U reaches"), "{text}");
+        assert!(text.contains("\nwarning: 1 more warning in the whole report\n"), "{text}");
         let text = long(3, 40).to_string();
         assert!(text.contains("more warnings in the whole report\n"), "{text}");
     }

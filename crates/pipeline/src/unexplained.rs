@@ -20,6 +20,10 @@ use crate::robot::{BETTER, Evidence, Nominal, percent};
 /// Number of recordings that are named.
 const NAMED: usize = 3;
 
+/// Later recordings leave this many times as much unexplained as a model's own if they have a cause
+/// of their own.
+const MORE: f64 = 1.5;
+
 /// Times that a lag is taken off and looked for again.
 const ROUNDS: usize = 3;
 
@@ -47,7 +51,15 @@ impl Evidence<'_> {
                 .into_iter()
                 .collect());
         }
-        Ok(payloads(&robot, &recorded, &needed).into_iter().map(|text| mild(&text)).collect())
+        // What all recordings show is what the description has wrong.
+        let shown = Shown::of(&robot, &recorded, &needed);
+        let differ = shown.count() < recorded.len() || shown.is_of_both_signs();
+        Ok(shown
+            .words(recorded.len())
+            .filter(|_| differ)
+            .map(|text| mild(&text))
+            .into_iter()
+            .collect())
     }
 
     /// Takes a lag, s, off the torques, and chooses the robot again: the one that was chosen has
@@ -106,9 +118,14 @@ pub fn unexplained_by_model(model: &Model, paths: &[PathBuf]) -> Result<Vec<Find
     let robot = driven(&later.robot, preparation.torque);
     let inputs = later.logs()?;
     let needed = needed(&robot, &recorded, &inputs);
+    // Recordings that the robot explains as well as the model's own have no cause of their own.
+    let own = model.input_error.iter().map(|error| error * error).sum::<f64>().sqrt();
+    if missed(&needed, robot.joint_count()) < MORE * own {
+        return Ok(Vec::new());
+    }
     let found = match torque_lag(&needed, robot.joint_count()) {
         Some(lag) => Some(lag_words(lag)),
-        None => payloads(&robot, &recorded, &needed),
+        None => Shown::of(&robot, &recorded, &needed).words(recorded.len()),
     };
     Ok(found.iter().map(|text| warning(Code::Cause, text)).collect())
 }
@@ -143,49 +160,75 @@ fn lag_words(lag: f64) -> String {
     )
 }
 
-/// Returns a clause about payloads, if some recordings show one.
-fn payloads(robot: &Robot, logs: &[PreparedLog], needed: &[NeededTorques]) -> Option<String> {
-    let mass: f64 = robot.inertial_parameters().iter().step_by(10).sum();
-    let of_log = |(log, needed): (&PreparedLog, &NeededTorques)| {
-        let found = payload(robot, needed)?;
-        (found.mass.abs() > LEAST_MASS * mass).then(|| (log.name.clone(), found))
-    };
-    let found: Vec<(String, ShownPayload)> = logs.iter().zip(needed).filter_map(of_log).collect();
-    let (heavier, lighter): (Vec<_>, Vec<_>) =
-        found.into_iter().partition(|(_, payload)| payload.mass > 0.0);
-    payload_words([&heavier, &lighter], logs.len())
+/// Recordings that show a payload, by their names: with more at the last link than the robot, and
+/// with less.
+struct Shown {
+    heavier: Vec<(String, ShownPayload)>,
+    lighter: Vec<(String, ShownPayload)>,
 }
 
-/// Returns a clause about the recordings, of all, whose last link is `heavier` than the robot's or
-/// than in `lighter` ones, and what that explains.
-fn payload_words([heavier, lighter]: [&[(String, ShownPayload)]; 2], of: usize) -> Option<String> {
-    let mean = |found: &[(String, ShownPayload)], value: &dyn Fn(&ShownPayload) -> f64| {
-        found.iter().map(|(_, payload)| value(payload)).sum::<f64>() / found.len().max(1) as f64
+impl Shown {
+    fn of(robot: &Robot, logs: &[PreparedLog], needed: &[NeededTorques]) -> Self {
+        let mass: f64 = robot.inertial_parameters().iter().step_by(10).sum();
+        let of_log = |(log, needed): (&PreparedLog, &NeededTorques)| {
+            let found = payload(robot, needed)?;
+            (found.mass.abs() > LEAST_MASS * mass).then(|| (log.name.clone(), found))
+        };
+        let found = logs.iter().zip(needed).filter_map(of_log);
+        let (heavier, lighter) = found.partition(|(_, payload)| payload.mass > 0.0);
+        Self { heavier, lighter }
+    }
+
+    fn count(&self) -> usize {
+        self.heavier.len() + self.lighter.len()
+    }
+
+    fn is_of_both_signs(&self) -> bool {
+        !self.heavier.is_empty() && !self.lighter.is_empty()
+    }
+
+    /// Returns a clause about the recordings, of all, whose last link is heavier than the robot's,
+    /// or than in lighter ones, and what that explains; `None` if there are none.
+    fn words(&self, of: usize) -> Option<String> {
+        let Self { heavier, lighter } = self;
+        let mean = |found: &[(String, ShownPayload)], value: &dyn Fn(&ShownPayload) -> f64| {
+            found.iter().map(|(_, payload)| value(payload)).sum::<f64>() / found.len().max(1) as f64
+        };
+        let mass = |found| mean(found, &|payload| payload.mass);
+        let named = if heavier.is_empty() { lighter } else { heavier };
+        let all = [&heavier[..], lighter].concat();
+        let names: Vec<&str> = named.iter().take(NAMED).map(|(name, _)| name.as_str()).collect();
+        let more = match named.len() - names.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        let (kg, than) = match (heavier.is_empty(), lighter.is_empty()) {
+            (true, _) => (-mass(lighter), "less than the robot's"),
+            (_, true) => (mass(heavier), "more than the robot's"),
+            _ => (mass(heavier) - mass(lighter), "more than in the others"),
+        };
+        (!all.is_empty()).then(|| {
+            format!(
+                "in {}{more} ({} of {}) the last link has {kg:.1} kg {than}: that explains {} of \
+                 what is unexplained there; make a model for each payload, or give the tool in the \
+                 description",
+                names.join(", "),
+                named.len(),
+                counted(of, "recording"),
+                percent(mean(&all, &|payload| payload.explained))
+            )
+        })
+    }
+}
+
+/// Returns the norm over the joints of the root mean square of what is unexplained, N m.
+fn missed(needed: &[NeededTorques], joints: usize) -> f64 {
+    let rows: usize = needed.iter().map(|log| log.needed.len() / joints).sum();
+    let of_log = |log: &NeededTorques| -> f64 {
+        let missed = log.recorded.iter().zip(&log.needed).map(|(a, b)| (a - b) * (a - b));
+        missed.sum()
     };
-    let mass = |found| mean(found, &|payload| payload.mass);
-    let named = if heavier.is_empty() { lighter } else { heavier };
-    let all = [heavier, lighter].concat();
-    let names: Vec<&str> = named.iter().take(NAMED).map(|(name, _)| name.as_str()).collect();
-    let more = match named.len() - names.len() {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
-    let (kg, than) = match (heavier.is_empty(), lighter.is_empty()) {
-        (true, _) => (-mass(lighter), "less than the robot's"),
-        (_, true) => (mass(heavier), "more than the robot's"),
-        _ => (mass(heavier) - mass(lighter), "more than in the others"),
-    };
-    (!all.is_empty()).then(|| {
-        format!(
-            "in {}{more} ({} of {}) the last link has {kg:.1} kg {than}: that explains {} of what \
-             is unexplained there; make a model for each payload, or give the tool in the \
-             description",
-            names.join(", "),
-            named.len(),
-            counted(of, "recording"),
-            percent(mean(&all, &|payload| payload.explained))
-        )
-    })
+    (needed.iter().map(of_log).sum::<f64>() / rows.max(1) as f64).sqrt()
 }
 
 /// Returns filtered torques beside what the robot needs for their motions: what was taken off them
