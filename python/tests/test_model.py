@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pickle
+import re
 import subprocess
 import warnings
 from collections.abc import Callable
@@ -135,7 +136,7 @@ def test_logs_are_prepared_for_the_model(built: rt.BuiltModel, logs: list[rt.Run
 
 def gapped(run: rt.Run) -> rt.Run:
     """Return a run without the samples of 0.08 s."""
-    kept = np.r_[:300, 320 : len(run)]
+    kept = np.r_[:60, 80 : len(run)]
     return rt.Run(run.t[kept], run.q[kept], run.qd[kept], run.tau[kept], name="gapped")
 
 
@@ -389,4 +390,6 @@ def test_a_check_says_by_how_much_torques_come_late(
     ]
     check = built.model.check(late)
     causes = [finding.text for finding in check.findings if finding.code == "cause"]
-    assert not check and len(causes) == 1 and "60 ms later" in causes[0]
+    assert not check and len(causes) == 1
+    lag = re.search(r"come (\d+) ms later", causes[0])
+    assert lag is not None and abs(int(lag[1]) - 60) < 10, causes
