@@ -80,6 +80,10 @@ impl Model {
 impl Candidate {
     /// Reads a model for which motions were held out; `None` if the file is none.
     fn read(path: &Path) -> Option<Self> {
+        // A device has no end.
+        if !path.is_file() {
+            return None;
+        }
         let text = std::fs::read_to_string(path).ok()?;
         // A quick look before the whole file is parsed.
         if !text.contains("\"calibration\"") && !text.contains("\"held_out\"") {
