@@ -361,7 +361,8 @@ fn torques_that_come_late_are_named_with_their_lag() {
         let lags = run["findings"].as_array().unwrap().iter();
         let lag = lags.filter_map(|finding| finding["numbers"]["lag"].as_f64()).next();
         let expected = 0.01 * samples as f64;
-        assert!(lag.is_some_and(|lag| (lag - expected).abs() < 4e-3), "{samples}: {lag:?}");
+        let is_near = |lag: f64| (lag - expected).abs() < 0.1 * expected;
+        assert!(lag.is_some_and(is_near), "{samples}: {lag:?}");
     }
 }
 
@@ -380,6 +381,7 @@ fn a_check_names_the_payload_by_which_logs_differ() {
     });
     let run = lab.run("check --model made/model.json --data logs");
     assert_eq!(run.code, 1, "{run:#?}");
-    assert!(run.stdout.contains("kg more than the robot's"), "{run:#?}");
-    assert!(!run.stdout.contains("make the model again"), "{run:#?}");
+    let said = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("kg more than the robot's: that explains"), "{said}");
+    assert!(!said.contains("make the model again"), "{said}");
 }
