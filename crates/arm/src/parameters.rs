@@ -39,10 +39,12 @@ pub(super) struct ArmParameters {
 /// Numbers of logarithms lie within this distance from 0: a factor of 10.
 const WIDEST: f64 = LN_10;
 
-/// The largest factor on the inertia that a motor feels and on the density of a link, and the least
-/// one by its inverse. A model whose inertia grows without bound moves as no model does: not at
-/// all.
-const LARGEST_INERTIA: f64 = 3.0;
+/// Highest number of the inertia that a motor feels: a factor of 100. Where torque is measured
+/// behind the gear, the links alone may have nearly none.
+const LARGEST_INERTIA: f64 = LN_10;
+
+/// The least factor on the inertia that a motor feels.
+const LEAST_INERTIA: f64 = 0.1;
 
 /// The largest payload that is tried, kg.
 const LARGEST_PAYLOAD: f64 = 100.0;
@@ -112,12 +114,10 @@ impl ArmParameters {
         match group {
             Group::Inertia => {
                 // The motor inertia must not become negative.
-                let rest =
-                    (1.0 - drive.armature / self.inertia[joint]).max(LARGEST_INERTIA.recip());
-                let most = half(LARGEST_INERTIA.ln());
-                let motor = (Quantity::MotorInertia, [half(rest.ln().min(0.0)), most]);
+                let rest = (1.0 - drive.armature / self.inertia[joint]).max(LEAST_INERTIA);
+                let motor = (Quantity::MotorInertia, [half(rest.ln().min(0.0)), LARGEST_INERTIA]);
                 let link = self.link(joint).iter().any(|x| *x != 0.0);
-                let density = if_any(link, Quantity::Density, [-most, most]);
+                let density = if_any(link, Quantity::Density, [-WIDEST, WIDEST].map(half));
                 [vec![motor], density].concat()
             }
             Group::Viscous => if_any(viscous.v1 > 0.0, Quantity::Viscous, [-WIDEST, WIDEST]),
