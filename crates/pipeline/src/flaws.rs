@@ -1,5 +1,6 @@
 //! Samples of recordings that are missing or wrong.
 
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use reachtube_diagnose::{WrongSamples, wrong_samples};
@@ -37,7 +38,7 @@ pub(crate) fn find_flaws(log: &mut RawLog, robot: &Robot) -> Result<()> {
     let leave_out = |kept: &mut [bool], from: usize, until: usize| {
         kept[from.saturating_sub(BESIDE)..(until + BESIDE).min(log.run.len())].fill(false);
     };
-    let mut flaws = Vec::new();
+    let (mut flaws, places) = (Vec::new(), Places::of(log));
     for wrong in &wrong {
         let outcome = match (is_few, &wrong.rows[..], wrong.is_certain) {
             (true, [_, ..], _) => FlawOutcome::LeftOut,
@@ -48,16 +49,16 @@ pub(crate) fn find_flaws(log: &mut RawLog, robot: &Robot) -> Result<()> {
             FlawOutcome::LeftOut => {
                 for rows in &wrong.rows {
                     leave_out(&mut kept, rows.start, rows.end);
-                    flaws.push(described(robot, log, wrong, Some(rows.start), outcome));
+                    flaws.push(described(robot, &places, wrong, Some(rows.start), outcome));
                 }
             }
-            _ => flaws.push(described(robot, log, wrong, wrong.sample, outcome)),
+            _ => flaws.push(described(robot, &places, wrong, wrong.sample, outcome)),
         }
     }
     let mut missing = 0.0;
     for (before, step) in steps.iter().enumerate().filter(|(_, step)| **step > longest) {
         leave_out(&mut kept, before + 1, before + 1);
-        flaws.push(gap(log, before + 1, step - usual));
+        flaws.push(gap(&places, before + 1, step - usual));
         missing += step - usual;
     }
     if missing > LARGEST_MISSING * log.run.duration() {
@@ -74,13 +75,13 @@ pub(crate) fn find_flaws(log: &mut RawLog, robot: &Robot) -> Result<()> {
 /// Describes samples that are wrong; a sample of them is at `sample`.
 fn described(
     robot: &Robot,
-    log: &RawLog,
+    places: &Places,
     wrong: &WrongSamples,
     sample: Option<usize>,
     outcome: FlawOutcome,
 ) -> Flaw {
     let joint = wrong.joint.map(|joint| &*robot.joints()[joint].name);
-    let place = place(log, sample);
+    let (log, place) = (places.log, places.place(sample));
     let since = sample.map(|sample| log.run.times[sample]);
     let at = since.map(|time| format!(" at {time:.3} s")).unwrap_or_default();
     let subject = joint.unwrap_or("the sample");
@@ -92,9 +93,10 @@ fn described(
 }
 
 /// Describes a gap before `sample`, in which samples of some time, s, are missing.
-fn gap(log: &RawLog, sample: usize, missing: f64) -> Flaw {
+fn gap(places: &Places, sample: usize, missing: f64) -> Flaw {
+    let log = places.log;
     let [before, after] = [log.run.times[sample - 1], log.run.times[sample]];
-    let place = place(log, Some(sample));
+    let place = places.place(Some(sample));
     let text =
         format!("{place}: {:.0} ms of samples are missing before {after:.3} s", 1e3 * missing);
     let time = Some(log.run.start + 0.5 * (before + after));
@@ -114,20 +116,34 @@ pub(crate) fn first_of(flaws: &[Flaw]) -> String {
     }
 }
 
-/// Returns the file of a log, with the line of a sample where the lines below a header are the
-/// samples.
-fn place(log: &RawLog, sample: Option<usize>) -> String {
-    let file =
-        log.file.file_name().map_or_else(|| log.name.clone(), |name| name.to_string_lossy().into());
-    let line = |sample: usize| {
-        let text = std::fs::read_to_string(&log.file).ok()?;
-        let lines = text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty());
-        let lines: Vec<usize> = lines.map(|(_, number)| number).collect();
-        let header = lines.len().checked_sub(log.run.len())?;
-        lines.get(header + sample).copied()
-    };
-    match sample.and_then(line) {
-        Some(line) => format!("{file}:{line}"),
-        None => file,
+/// The file of a log, and the lines of its samples, which are read once if they are asked for.
+struct Places<'a> {
+    log: &'a RawLog,
+    lines: OnceCell<Vec<usize>>,
+}
+
+impl<'a> Places<'a> {
+    fn of(log: &'a RawLog) -> Self {
+        Self { log, lines: OnceCell::new() }
     }
+
+    /// Returns the file, with the line of a sample where the lines below a header are the samples.
+    fn place(&self, sample: Option<usize>) -> String {
+        let log = self.log;
+        let file = log.file.file_name();
+        let file = file.map_or_else(|| log.name.clone(), |name| name.to_string_lossy().into());
+        match sample.and_then(|sample| self.lines.get_or_init(|| lines(log)).get(sample)) {
+            Some(line) => format!("{file}:{line}"),
+            None => file,
+        }
+    }
+}
+
+/// Returns the line of each sample, from 1; none for a file in which lines are no samples.
+fn lines(log: &RawLog) -> Vec<usize> {
+    let text = std::fs::read_to_string(&log.file).unwrap_or_default();
+    let lines = text.lines().zip(1..).filter(|(line, _)| !line.trim().is_empty());
+    let lines: Vec<usize> = lines.map(|(_, number)| number).collect();
+    let header = lines.len().checked_sub(log.run.len());
+    header.map_or_else(Vec::new, |header| lines[header..].to_vec())
 }

@@ -206,17 +206,7 @@ mod tests {
             let states = times.iter().flat_map(|t| [*t, 1.0]).collect();
             let run = Run::new(1, times, states, vec![0.0; 101]).unwrap();
             let name = motion.to_string();
-            let file = (&name).into();
-            let log = RawLog {
-                name: name.clone(),
-                file,
-                motion: None,
-                order: None,
-                run,
-                notes: vec![],
-                moved: vec![],
-                flaws: vec![],
-            };
+            let log = RawLog::new(&name, &name, run);
             Recording { log: Arc::new(log), motion: name }
         };
         motions.iter().map(of).collect()

@@ -109,16 +109,7 @@ mod tests {
     }
 
     fn log(name: &str, run: Run) -> RawLog {
-        RawLog {
-            name: name.into(),
-            file: name.into(),
-            motion: None,
-            order: None,
-            notes: vec![],
-            moved: vec![],
-            flaws: vec![],
-            run,
-        }
+        RawLog::new(name, name, run)
     }
 
     #[test]

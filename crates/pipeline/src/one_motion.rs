@@ -241,16 +241,7 @@ mod tests {
     }
 
     fn logs(runs: Vec<Run>) -> Vec<RawLog> {
-        let log = |(index, run)| RawLog {
-            name: format!("m{index}"),
-            file: format!("m{index}.csv").into(),
-            motion: None,
-            order: None,
-            notes: vec![],
-            moved: vec![],
-            flaws: vec![],
-            run,
-        };
+        let log = |(index, run)| RawLog::new(format!("m{index}"), format!("m{index}.csv"), run);
         runs.into_iter().enumerate().map(log).collect()
     }
 

@@ -117,16 +117,7 @@ mod tests {
         let states = times.iter().flat_map(state).collect();
         let torques = times.iter().map(torque).collect();
         let run = reachtube_recordings::Run::new(1, times, states, torques).unwrap();
-        let raw = reachtube_identify::prepare::RawLog {
-            name: "log".into(),
-            file: "log.csv".into(),
-            motion: None,
-            order: None,
-            notes: vec![],
-            moved: vec![],
-            flaws: vec![],
-            run,
-        };
+        let raw = RawLog::new("log", "log.csv", run);
         (robot, raw)
     }
 

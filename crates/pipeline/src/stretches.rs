@@ -147,10 +147,8 @@ mod tests {
         let states = times.iter().flat_map(|t| [t.sin(), t.cos()]).collect();
         let torques = vec![0.0; times.len()];
         let run = Run::new(1, times, states, torques).unwrap().with_digest();
-        let (name, file, motion) = ("a".to_string(), "a.csv".into(), Some("m".to_string()));
-        let [notes, moved] = [vec![], vec![]];
-        let mut log =
-            RawLog { name, file, motion, order: Some(3), run, notes, moved, flaws: vec![] };
+        let (motion, order) = (Some("m".to_string()), Some(3));
+        let mut log = RawLog { motion, order, ..RawLog::new("a", "a.csv", run) };
         find_flaws(&mut log, &pendulum()).unwrap();
         log
     }

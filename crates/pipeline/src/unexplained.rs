@@ -124,7 +124,7 @@ pub fn unexplained_by_model(model: &Model, paths: &[PathBuf]) -> Result<Vec<Find
         return Ok(Vec::new());
     }
     let found = match torque_lag(&needed, robot.joint_count()) {
-        Some(lag) => Some(lag_words(lag)),
+        Some(lag) => Some(lag_words(lag, "")),
         None => Shown::of(&robot, &recorded, &needed).words(recorded.len()),
     };
     Ok(found.iter().map(|text| warning(Code::Cause, text)).collect())
@@ -144,19 +144,18 @@ fn mild(text: &str) -> Finding {
 
 /// Makes the finding about a lag, with which parts of the torques are unexplained as they are and
 /// without it.
-fn late(lag: f64, unexplained: [f64; 2]) -> Finding {
-    let [stated, without] = unexplained.map(percent);
-    let text =
-        format!("{}: {without} of them is then unexplained in place of {stated}", lag_words(lag));
-    Finding { numbers: [("lag".to_string(), lag)].into(), ..mild(&text) }
+fn late(lag: f64, [stated, without]: [f64; 2]) -> Finding {
+    let (stated, without) = (percent(stated), percent(without));
+    let gain = format!(": without that lag, {without} of them is unexplained in place of {stated}");
+    Finding { numbers: [("lag".to_string(), lag)].into(), ..mild(&lag_words(lag, &gain)) }
 }
 
-fn lag_words(lag: f64) -> String {
+fn lag_words(lag: f64, gain: &str) -> String {
     let [later, earlier] = if lag > 0.0 { ["later", "earlier"] } else { ["earlier", "later"] };
     let ms = (1e3 * lag).abs().round();
     format!(
-        "the torques come {ms} ms {later} than the motion that they belong to; move their columns \
-         {earlier} by that, or record torques and positions with one clock"
+        "the torques come {ms} ms {later} than the motion that they belong to{gain}; move their \
+         columns {earlier} by {ms} ms, or record torques and positions with one clock"
     )
 }
 

@@ -54,8 +54,8 @@ pub fn next_motion_of_held_out(
     let beta = (1.0 - CONFIDENCE) / models as f64;
     let most = two_digits_up(100.0 * clopper_pearson(motions, 0, beta));
     format!(
-        "at most {models} in {of} {leaves} {sets}, and at confidence {:.0} % at most {most} % \
-         ({several})",
+        "at most {models} in {of} {leaves} {sets} on average, and at most {most} % at confidence \
+         {:.0} % ({several})",
         100.0 * CONFIDENCE
     )
 }
@@ -70,13 +70,19 @@ mod tests {
         // 1 - 0.05^(1/5) = 0.4507.
         assert_eq!(
             bound(Some(5), Some(1.0), 1),
-            "at most 1 in 6 leaves the sets, and at confidence 95 % at most 46 % (5 motions held \
-             out of every choice)"
+            "at most 1 in 6 leaves the sets on average, and at most 46 % at confidence 95 % (5 \
+             motions held out of every choice)"
         );
         // 1 - 0.01^(1/5) = 0.6019.
         let several = bound(Some(5), Some(1.21), 5);
-        assert!(several.starts_with("at most 5 in 6 leave X0 and U times 1.3, "), "{several}");
-        assert!(several.contains("at most 61 % (5 motions held out; counts the 5"), "{several}");
+        assert!(
+            several.starts_with("at most 5 in 6 leave X0 and U times 1.3 on average, "),
+            "{several}"
+        );
+        assert!(
+            several.contains("at most 61 % at confidence 95 % (5 motions held out; counts"),
+            "{several}"
+        );
         let none = [
             (Some(5), Some(1.0), 6),
             (Some(1), Some(1.0), 1),

@@ -42,18 +42,8 @@ pub(crate) fn marked(
             return Err(RecordingsError::Defects(defects).into());
         }
         let name = format!("{}_{:02}", name_of(path), number + 1);
-        let (file, motion) = (path.to_path_buf(), cut.suite.clone());
-        let notes = std::mem::take(&mut notes);
-        found.push(RawLog {
-            name,
-            file,
-            motion,
-            order: None,
-            run,
-            notes,
-            moved: vec![],
-            flaws: vec![],
-        });
+        let (motion, notes) = (cut.suite.clone(), std::mem::take(&mut notes));
+        found.push(RawLog { motion, notes, ..RawLog::new(name, path, run) });
     }
     Ok(found)
 }

@@ -314,16 +314,7 @@ mod tests {
                     velocity,
                     ..Default::default()
                 };
-                let raw = RawLog {
-                    name: "a".into(),
-                    file: "a".into(),
-                    motion: None,
-                    order: None,
-                    run: run.clone(),
-                    notes: vec![],
-                    moved: vec![],
-                    flaws: vec![],
-                };
+                let raw = RawLog::new("a", "a", run.clone());
                 let log = &prepare(&[raw], &settings, 5.0, Some(&robot)).unwrap().logs[0];
                 let preparation = Preparation { torque, gains, ..preparation() };
                 let mut live = LiveLog::new(&robot, &preparation, velocity, STEP, STEP).unwrap();

@@ -206,16 +206,7 @@ mod tests {
             before: vec![],
             sha256: String::new(),
         };
-        RawLog {
-            name: "wave".into(),
-            file: "wave.csv".into(),
-            motion: None,
-            order: None,
-            run,
-            notes: vec![],
-            moved: vec![],
-            flaws: vec![],
-        }
+        RawLog::new("wave", "wave.csv", run)
     }
 
     #[test]

@@ -53,6 +53,21 @@ pub enum FlawOutcome {
 }
 
 impl RawLog {
+    /// Returns a run as the log of a file, without motion, order, notes and flaws.
+    #[must_use]
+    pub fn new(name: impl Into<String>, file: impl Into<PathBuf>, run: Run) -> Self {
+        Self {
+            name: name.into(),
+            file: file.into(),
+            motion: None,
+            order: None,
+            run,
+            notes: Vec::new(),
+            moved: Vec::new(),
+            flaws: Vec::new(),
+        }
+    }
+
     /// Returns one column as a function of the sample: the values of `joint` in `which`.
     pub(super) fn column<'a>(
         &'a self,
@@ -88,17 +103,7 @@ mod tests {
         let log = |times: Vec<f64>| {
             let (states, torques) = (vec![0.0; 2 * times.len()], vec![0.0; times.len()]);
             let run = Run::new(1, times, states, torques).unwrap();
-            let (name, file) = ("a".to_string(), "a.csv".into());
-            RawLog {
-                name,
-                file,
-                motion: None,
-                order: None,
-                run,
-                notes: vec![],
-                moved: vec![],
-                flaws: vec![],
-            }
+            RawLog::new("a", "a.csv", run)
         };
         let gap = log(vec![0.0, 0.01, 0.02, 0.52, 0.53, 0.54]);
         let note = gap.filled_gaps(Some(1.0)).unwrap();

@@ -137,7 +137,7 @@ impl Source {
         add_turns(&mut run, &self.turns);
         let run = if self.compensated { with_compensation(run, robot) } else { run };
         let (name, order) = (self.name(), self.order);
-        Ok(RawLog { name, file, motion: None, order, run, notes, moved: vec![], flaws: vec![] })
+        Ok(RawLog { order, notes, ..RawLog::new(name, file, run) })
     }
 
     /// Returns the name of the file, or of the folder of the files.

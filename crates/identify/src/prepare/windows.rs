@@ -225,17 +225,7 @@ mod tests {
     fn windows_shorter_than_the_time_between_samples_are_refused() {
         let times: Vec<f64> = (0..5).map(|k| 0.1 * f64::from(k)).collect();
         let run = Run::new(1, times, vec![0.0; 10], vec![0.0; 5]).unwrap();
-        let (name, file, notes) = ("slow".into(), "slow.csv".into(), vec![]);
-        let log = RawLog {
-            name,
-            file,
-            motion: None,
-            order: None,
-            run,
-            notes,
-            moved: vec![],
-            flaws: vec![],
-        };
+        let log = RawLog::new("slow", "slow.csv", run);
         assert!(check_window(0.1, [&log]).is_ok());
         let refused = check_window(0.02, [&log]).unwrap_err().to_string();
         let expected = "slow: a window of 0.02 s is shorter than the time between samples, 0.1 s";
