@@ -256,6 +256,7 @@ mod tests {
             gains: Vec::new(),
             cut_off: None,
             window: Some(0.5),
+            differentiated: false,
             columns: ColumnSettings::default(),
             log: LogSettings::default(),
         };

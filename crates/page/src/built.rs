@@ -16,13 +16,13 @@ use crate::sources::Sources;
 impl Page {
     /// Adds a link to the page about motions that were held out, in the folder `held-out` beside
     /// this page's folder.
-    pub fn link_to_held_out(&mut self) {
+    pub(crate) fn link_to_held_out(&mut self) {
         self.link("the same sets on motions that were held out", "held-out");
     }
 
     /// Adds a link to the page about the model's own recordings, in `folder` beside this page's
     /// folder.
-    pub fn link_to_own(&mut self, folder: &str) {
+    pub(crate) fn link_to_own(&mut self, folder: &str) {
         self.link("the recordings that the model was made of", folder);
     }
 

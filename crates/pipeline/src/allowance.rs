@@ -1,11 +1,12 @@
 //! An allowance of the sets for motions that were not recorded.
 //!
 //! The smallest sets enclose what was recorded and nothing more. Each motion is left out in turn,
-//! and the sets of the others say how far it leaves them. If that is more than what is accepted of
-//! motions that are held out, radii are added to the sets, before the held-out motions are looked
-//! at: the least factor of the input's error that covers all motions that were left out, and that
-//! one more motion needs with a probability of 5 % at most, if motions need factors of one normal
-//! distribution.
+//! and the sets of the others say how far it leaves them. If that is twice what is accepted of
+//! motions that are held out, or more, radii are added to the sets, before the held-out motions are
+//! looked at: the least factor of the input's error that covers all motions that were left out, and
+//! that one more motion needs with a probability of 5 % at most, if motions need factors of one
+//! normal distribution. Between once and twice what is accepted, a part of these radii is added
+//! that grows from none to all, so that a sample more or less cannot make the sets jump.
 
 use reachtube_conform::Answer;
 use reachtube_finding::Finding;
@@ -105,7 +106,7 @@ impl Widened {
 
 /// Returns the allowance that motions ask for which were left out in turn, rounded up to three
 /// digits; empty if no more than a part of their rows leaves the sets of the others, and none needs
-/// more than a factor: the two limits `most`.
+/// more than a factor: the two limits `most`. Little beyond them, it is small.
 fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     if all.len() < 2 {
         return (Vec::new(), "there is a single motion or part".into(), None);
@@ -121,7 +122,8 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
         false => "no factor of these sets encloses one".into(),
     };
     let leave = format!("of {} motions or parts left out in turn, {leave}, and {grow}", all.len());
-    if part <= most[0] && growth <= most[1] {
+    let share = share([[part, 0.0, most[0]], [growth, 1.0, most[1]]]);
+    if share == 0.0 {
         let accepted = format!("at most {} % and {} are accepted", 100.0 * most[0], most[1]);
         return (Vec::new(), format!("{leave}; {accepted}"), None);
     }
@@ -132,13 +134,31 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
         return (Vec::new(), format!("{leave}; no allowance encloses them"), finding);
     };
     let factor = upper_bound(&factors);
-    let allowance = needed.shape.iter().map(|radius| rounded_up(factor * radius, 3)).collect();
+    let radius = |radius: &f64| rounded_up(share * factor * radius, 3);
+    let allowance = needed.shape.iter().map(radius).collect();
     let largest = factors.iter().copied().fold(0.0, f64::max);
-    let reason = format!(
+    let mut reason = format!(
         "{leave}; they need up to {largest:.2} times the error of the input, and {factor:.2} times \
          is the bound at 95 % for one more"
     );
+    if share < 1.0 {
+        reason += &format!(
+            ", of which {:.0} % are added, since it is less than twice what is accepted",
+            100.0 * share
+        );
+    }
     (allowance, reason, None)
+}
+
+/// Returns the share of an allowance that is added: none while each value is at most its limit, all
+/// once one is as far beyond its limit as the limit is above the least value. The entries are
+/// \[value, least value, limit\].
+fn share(values: [[f64; 3]; 2]) -> f64 {
+    let beyond = |[value, least, limit]: [f64; 3]| match value > limit {
+        true => ((value - limit) / (limit - least)).min(1.0),
+        false => 0.0,
+    };
+    values.map(beyond).into_iter().fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -193,6 +213,21 @@ mod tests {
     fn check(model: &Model, runs: MemoryRuns) -> Check {
         let job = CheckJob::new(model.clone(), model.setup().unwrap(), runs);
         job.run(&Silent).unwrap()
+    }
+
+    #[test]
+    fn an_allowance_grows_from_none_to_all_beyond_what_is_accepted() {
+        let of = |part: f64, growth: f64| share([[part, 0.0, 0.01], [growth, 1.0, 2.0]]);
+        assert_eq!(
+            [of(0.0, 1.0), of(0.01, 2.0), of(0.02, 1.0), of(0.9, 1.0)],
+            [0.0, 0.0, 1.0, 1.0]
+        );
+        assert!((of(0.0125, 2.0) - 0.25).abs() < 1e-12 && (of(0.0125, 2.5) - 0.5).abs() < 1e-12);
+        assert_eq!(of(0.0, f64::INFINITY), 1.0);
+        // A limit at the least value leaves no room for less than all.
+        let strict =
+            |part: f64, growth: f64| share([[part, 0.0, 0.0], [growth, 1.0, f64::INFINITY]]);
+        assert_eq!([strict(0.0, 9.0), strict(1e-9, 1.0)], [0.0, 1.0]);
     }
 
     #[test]

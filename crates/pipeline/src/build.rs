@@ -5,7 +5,7 @@ use reachtube_arm::Equations;
 use reachtube_conform::model::LogRecord;
 use reachtube_conform::{Answer, FitSettings, Group, Model, Progress};
 use reachtube_finding::{Finding, Severity};
-use reachtube_identify::prepare::{LogEntry, PrepareSettings, RawLog, check_window};
+use reachtube_identify::prepare::{LogEntry, PrepareSettings, PreparedLog, RawLog, check_window};
 use reachtube_recordings::{MemoryRuns, Preparation, Torque};
 use reachtube_robot::Robot;
 
@@ -179,7 +179,7 @@ impl Decided<'_> {
         let Evidence { torque, settings, cut_off, trial, .. } = *self.evidence;
         let Nominal { robot, logs, findings, is_identified, .. } = chosen;
         let mut findings = unless_accepted(findings, given);
-        findings.extend(impossible_links(self.robot));
+        findings.extend(impossible_links(self.robot, is_identified));
         let has_folds = is_identified && torque != Torque::Compensated;
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
         let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
@@ -195,7 +195,7 @@ impl Decided<'_> {
         let without = || WithoutModel::new(&trial, &recordings, horizon, &foretold);
         let without_model = (!trial.equations.is_kinematic()).then(without).transpose()?;
         let choices = &chooser.choices;
-        answer.model = self.recorded(answer.model, preparation(choices, torque));
+        answer.model = self.recorded(answer.model, preparation(choices, torque, logs));
         let better = without_model.as_ref().filter(|without| !without.is_model_better());
         let wide = TooWide { given, choices, own: (&trial, &recordings), tried: &horizons, better };
         // What contradicts the robot is to be mended first: no choice can.
@@ -349,13 +349,15 @@ fn choose_equations(
 }
 
 /// Returns what was done to logs, to do it to others.
-fn preparation(choices: &Choices, torque: Torque) -> Preparation {
+fn preparation(choices: &Choices, torque: Torque, logs: &[PreparedLog]) -> Preparation {
+    let differentiated = logs.iter().filter(|log| log.differentiated).count();
     let window = choices.horizon.filter(|_| torque != Torque::Compensated);
     Preparation {
         torque,
         gains: choices.gains.clone(),
         cut_off: choices.cut_off,
         window,
+        differentiated: 2 * differentiated > logs.len(),
         columns: choices.columns.clone(),
         log: choices.log.clone(),
     }

@@ -92,6 +92,7 @@ impl Cut {
             gains: Vec::new(),
             cut_off,
             window: Some(horizon),
+            differentiated: false,
             columns: ColumnSettings::default(),
             log: LogSettings::default(),
         };

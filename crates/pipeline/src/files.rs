@@ -49,7 +49,13 @@ impl Built {
     /// Returns the answer as JSON, as [`ModelOutput`] describes it.
     #[must_use]
     pub fn to_json(&self) -> Value {
-        let output = ModelOutput {
+        serde_json::to_value(self.output()).expect("an answer has string keys")
+    }
+
+    /// Returns what is written of the answer as JSON.
+    #[must_use]
+    pub fn output(&self) -> ModelOutput<'_> {
+        ModelOutput {
             useful: self.is_useful(),
             conformant: self.answer.holds(),
             horizon: self.choices.horizon,
@@ -61,8 +67,7 @@ impl Built {
             claim: &self.answer.model.proof.claim,
             findings: self.all_findings(),
             provenance: self.answer.model.own_provenance(),
-        };
-        serde_json::to_value(output).expect("an answer has string keys")
+        }
     }
 
     /// Returns the names and the texts of the model file, the robot file and the file of choices,

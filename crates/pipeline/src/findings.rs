@@ -28,17 +28,18 @@ pub(crate) fn implausible(result: &Implausible) -> Finding {
 }
 
 /// Makes the warning that links of a description have inertias that no body has, if some have.
-pub(crate) fn impossible_links(robot: &Robot) -> Option<Finding> {
+pub(crate) fn impossible_links(robot: &Robot, is_identified: bool) -> Option<Finding> {
     let links = robot.description().impossible_links();
-    let text = format!(
-        "no body has the mass and inertia of the links that {} move: only the geometry of the \
-         description is used",
-        links.join(", ")
-    );
-    let place = Some(links.join(", "));
+    let used = match is_identified {
+        true => "only the geometry of the description is used",
+        false => "they are used all the same, since together they explain the torques",
+    };
+    let links_of = links.join(", ");
+    let text =
+        format!("no body has the mass and inertia of the links that {links_of} move: {used}");
     (!links.is_empty()).then(|| Finding {
         severity: Severity::Warning,
-        place,
+        place: Some(links_of),
         ..contradiction(&text)
     })
 }

@@ -178,6 +178,7 @@ mod tests {
             gains: vec![],
             cut_off: Some(5.0),
             window: None,
+            differentiated: false,
             columns: Default::default(),
             log: Default::default(),
         };

@@ -3,7 +3,9 @@ use std::path::{Path, PathBuf};
 
 use reachtube_arm::ArmModel;
 use reachtube_conform::{CheckJob, Model, Setup};
-use reachtube_identify::prepare::{PrepareSettings, PreparedLog, RawLog, check_window};
+use reachtube_identify::prepare::{
+    PrepareSettings, PreparedLog, RawLog, VelocitySource, check_window,
+};
 use reachtube_recordings::{DataSet, MemoryRuns, Preparation, Torque, any_simulated};
 use reachtube_robot::Robot;
 
@@ -89,13 +91,18 @@ impl Later {
         preparation: &Preparation,
         paths: &[PathBuf],
     ) -> Result<Self> {
-        let Preparation { torque, gains, cut_off, columns, log, window } = preparation;
+        let Preparation { torque, gains, cut_off, columns, log, window, differentiated } =
+            preparation;
         let robot = Robot::from_description(&model.robot())?;
         let settings = PrepareSettings {
             gains: gains.clone(),
             torque: Some(*torque),
             columns: columns.clone(),
             log: log.clone(),
+            velocity: match differentiated {
+                true => VelocitySource::Differentiated,
+                false => VelocitySource::Quieter,
+            },
             ..PrepareSettings::default()
         };
         let whole = read_logs(paths, &robot, &settings)?;

@@ -41,8 +41,11 @@ pub struct WithoutModel {
     #[serde(skip)]
     pub narrower: Vec<f64>,
     /// Part of the rows of the faster half of the motions that lie outside the sets of the slower
-    /// half: of the model, and without one. `None` for a single motion.
+    /// half, its allowance included: of the model, and without one. `None` for a single motion.
     pub faster: Option<[f64; 2]>,
+    /// The part of the rows that may lie outside.
+    #[serde(skip)]
+    pub(crate) largest_outside: f64,
 }
 
 impl WithoutModel {
@@ -79,14 +82,16 @@ impl WithoutModel {
             widest_of_model: finite(own.widest()),
             narrower: (0..own.half_widths.len()).map(narrower).collect(),
             faster: to_faster([trial, &other], recordings, horizon)?,
+            largest_outside: trial.largest_outside,
         })
     }
 
-    /// Returns whether the model is worth having: its sets are narrower than without one, and no
-    /// more rows of faster motions lie outside.
+    /// Returns whether the model is worth having: its sets are narrower than without one, and of
+    /// faster motions no more rows lie outside than accepted, or than without one.
     #[must_use]
     pub(crate) fn is_model_better(&self) -> bool {
-        self.gain() > 1.0 && self.faster.is_none_or(|[own, without]| own <= without)
+        let carries_over = |[own, without]: [f64; 2]| own <= without.max(self.largest_outside);
+        self.gain() > 1.0 && self.faster.is_none_or(carries_over)
     }
 
     /// Returns the geometric mean over the joints of the factor by which sets are narrower.
@@ -159,18 +164,18 @@ fn kinematic<'a>(trial: &Trial<'a>, equations: Equations) -> Trial<'a> {
 }
 
 /// Returns which part of the rows of the faster half of the motions lies outside the sets of the
-/// slower half, for each of some trials. A motion is as fast as its largest acceleration beside the
+/// slower half, with the allowance that this half asks for, for each of some trials. A motion is as fast as its largest acceleration beside the
 /// root mean square of all.
 fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result<Option<[f64; 2]>> {
     let [slower, faster] = by_speed(recordings);
     if slower.is_empty() || recordings.from_start {
         return Ok(None);
     }
-    let [slower, faster] =
-        [&slower, &faster].map(|logs| Prepared { logs, divides: false, ..*recordings });
+    let slower = Prepared { logs: &slower, ..*recordings };
+    let faster = Prepared { logs: &faster, divides: false, ..*recordings };
     let part_outside = |trial: &Trial| -> Result<f64> {
         let trial = Trial { allowance: None, fit: None, ..trial.clone() };
-        let model = trial.run(slower.cut(horizon, MOST_WINDOWS)?)?.model;
+        let model = Widened::of_some(&trial, &slower, horizon, MOST_WINDOWS)?.answer.model;
         let setup = model.setup()?;
         let check = CheckJob::new(model, setup, faster.cut(horizon, MOST_WINDOWS)?);
         let verdict = check.run(&Silent)?.verdict;
@@ -228,14 +233,24 @@ mod tests {
     fn compared(narrower: Vec<f64>, faster: Option<[f64; 2]>) -> WithoutModel {
         let (widest, widest_of_model) = (Some(0.9), Some(0.3));
         let equations = Equations::Held;
-        let widest_of = [0, 1];
-        WithoutModel { equations, widest, widest_of, widest_of_model, narrower, faster }
+        WithoutModel {
+            equations,
+            widest,
+            widest_of: [0, 1],
+            widest_of_model,
+            narrower,
+            faster,
+            largest_outside: 0.01,
+        }
     }
 
     #[test]
     fn a_model_is_worth_having_where_it_beats_none() {
         let better = compared(vec![4.0, 1.0], Some([0.01, 0.2]));
         assert!(better.is_model_better());
+        // What is accepted of motions that were left out is accepted of faster ones.
+        assert!(compared(vec![4.0], Some([0.01, 0.0])).is_model_better());
+        assert!(!compared(vec![4.0], Some([0.02, 0.0])).is_model_better());
         assert_eq!(
             better.words(),
             "sets 2 times as wide, the widest 90 % (with it 30 %); of faster motions 20 % outside \

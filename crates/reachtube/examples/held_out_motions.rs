@@ -9,7 +9,7 @@ use reachtube::{
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let robot = Robot::lwa4p();
-    let recorded = record(&robot, &CampaignOptions::demo(), folder.path(), &|_done, _total| ())?;
+    let recorded = record(&robot, &CampaignOptions::small(), folder.path(), &|_done, _total| ())?;
     let arm = ArmSettings::new(Torque::Compensated, 6);
     let setup = setup(robot, arm, Settings::default())?;
     let open = || DataSet::open(folder.path()).map(Box::new);

@@ -11,7 +11,7 @@ use reachtube::{
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = tempfile::tempdir()?;
     let robot = Robot::lwa4p();
-    let recorded = record(&robot, &CampaignOptions::demo(), folder.path(), &|_done, _total| ())?;
+    let recorded = record(&robot, &CampaignOptions::small(), folder.path(), &|_done, _total| ())?;
     let arm = ArmSettings::new(Torque::Compensated, 6);
     let setup = setup(robot, arm, Settings::default())?;
     let source = Box::new(DataSet::open(folder.path())?);

@@ -22,6 +22,9 @@ pub struct Preparation {
     /// and all recordings of one motion are a suite.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
+    /// Whether velocities are the differentiated positions, as in most of the model's recordings.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub differentiated: bool,
     /// Columns of CSV files, if their names are ambiguous.
     #[serde(default, skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,

@@ -1,4 +1,4 @@
-"""Edits the files of a demo in many ways, and compares each answer of the second program with the
+"""Edits the files of a small experiment in many ways, and compares each answer of the second program with the
 one that it must give. `tools/recheck/run` writes the files.
 
     python tools/recheck/mutants DEMO
@@ -21,15 +21,15 @@ from table import MUTANTS  # noqa: E402
 
 from recheck.cli import main  # noqa: E402
 
-def prepare(demo, folder):
-    """Takes what the mutants need of a demo."""
+def prepare(source, folder):
+    """Takes what the mutants need of it."""
     for name in ("short.json", "exact.json", "planes.json", "cubic.json", "points.jsonl",
                  "planes.jsonl"):
-        shutil.copy(demo / name, folder)
+        shutil.copy(source / name, folder)
     (folder / "cubic").mkdir()
     for name in ("reach.json", "M1a.csv", "M1a_tube.csv"):
-        shutil.copy(demo / "cubic" / name, folder / "cubic")
-    shutil.copytree(demo / "short", folder / "recordings")
+        shutil.copy(source / "cubic" / name, folder / "cubic")
+    shutil.copytree(source / "short", folder / "recordings")
 
 
 def answer(original, model, edit, options):
@@ -47,12 +47,12 @@ def answer(original, model, edit, options):
         return code, said.getvalue()
 
 
-def run(demo):
+def run(source):
     """Tries all mutants, prints what differs, and returns the number of wrong answers."""
     started, wrong = time.process_time(), 0
     with tempfile.TemporaryDirectory() as folder:
         original = Path(folder)
-        prepare(Path(demo), original)
+        prepare(Path(source), original)
         for model, name, edit, options, expected in MUTANTS:
             code, said = answer(original, model, edit, options)
             if code != expected:

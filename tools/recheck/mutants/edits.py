@@ -6,7 +6,7 @@ import json
 
 
 class Files:
-    """A copy of the demo's files, which an edit changes."""
+    """A copy of the experiment's files, which an edit changes."""
 
     def __init__(self, folder, model):
         self.folder, self.name = folder, model

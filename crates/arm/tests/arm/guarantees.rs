@@ -129,6 +129,7 @@ fn windows_of_one_log_have_no_bound() {
             gains: vec![],
             cut_off,
             window,
+            differentiated: false,
             columns: Default::default(),
             log: Default::default(),
         };

@@ -7,6 +7,7 @@ use reachtube::campaign::{CampaignOptions, RecordedCampaign, record};
 use reachtube_robot::Robot;
 
 use crate::error::Result;
+use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
@@ -45,6 +46,9 @@ pub(crate) struct Arguments {
     /// Runs of each suite
     #[arg(long, default_value_t = 15, value_name = "COUNT")]
     pub runs: usize,
+    /// Duration of each point-to-point motion, s [default: as a random speed gives]
+    #[arg(long, hide_short_help = true, value_name = "SECONDS", value_parser = seconds)]
+    pub duration: Option<f64>,
     /// Longest duration of a run, s
     #[arg(long, hide_short_help = true, default_value_t = 5.0, value_name = "SECONDS")]
     pub longest: f64,
@@ -80,6 +84,7 @@ fn options(args: &Arguments) -> Result<CampaignOptions> {
         motions: args.motions,
         start_points: args.start_points,
         runs: args.runs,
+        duration: args.duration,
         longest: args.longest,
         rest: args.rest,
         one_joint: args.one_joint,

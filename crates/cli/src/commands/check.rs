@@ -1,7 +1,7 @@
 //! `reachtube check`: does a model enclose recordings?
 
 use clap::Args;
-use reachtube::conform::{Keep, Notion};
+use reachtube::conform::{Check, Keep, Notion};
 
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
@@ -38,17 +38,26 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let check = opened.check()?;
     output::notes(&check.notes);
     let outcome = Outcome::of_model(check.verdict.conformant, &opened.model);
-    if !json && !global().verbose {
-        output::print_verdict(&opened.summary(&check).to_string(), &outcome)?;
-        return Ok(outcome);
-    }
-    let warnings = opened.model.warnings.iter();
-    warnings.for_each(|warning| output::warn(&format!("of the model itself: {warning}")));
-    if json {
-        output::print_json(&check)?;
-    } else {
-        let report = check.report(&opened.model.signals);
-        output::print_verdict(&report.to_string(), &outcome)?;
+    match json {
+        true => {
+            warn_of_model(&opened);
+            output::print_json(&check)?;
+        }
+        false => print(&opened, &check, &outcome)?,
     }
     Ok(outcome)
+}
+
+/// Prints a check on a few lines, or as a whole if the user asks for it.
+pub(crate) fn print(opened: &OpenedCheck, check: &Check, outcome: &Outcome) -> Result<()> {
+    if !global().verbose {
+        return output::print_verdict(&opened.summary(check).to_string(), outcome);
+    }
+    warn_of_model(opened);
+    output::print_verdict(&check.report(&opened.model.signals).to_string(), outcome)
+}
+
+fn warn_of_model(opened: &OpenedCheck) {
+    let warnings = opened.model.warnings.iter();
+    warnings.for_each(|warning| output::warn(&format!("of the model itself: {warning}")));
 }

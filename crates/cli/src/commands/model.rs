@@ -76,6 +76,50 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    let made = Made::new(args)?;
+    let outcome = made.outcome();
+    if json {
+        made.written.iter().for_each(|path| output::wrote(path));
+        output::print_json(&made.built.to_json())?;
+    } else {
+        made.print(args, &outcome)?;
+    }
+    Ok(outcome)
+}
+
+/// A model with the files that were written of it.
+pub(crate) struct Made {
+    pub built: Built,
+    written: Vec<PathBuf>,
+}
+
+impl Made {
+    /// Makes a model and writes its files.
+    pub(crate) fn new(args: &Arguments) -> Result<Self> {
+        let (built, written) = make(args)?;
+        Ok(Self { built, written })
+    }
+
+    pub(crate) fn outcome(&self) -> Outcome {
+        match self.built.answer.holds() {
+            false => Outcome::NotConformant,
+            true if self.built.is_useful() => Outcome::Done,
+            true => Outcome::Vacuous,
+        }
+    }
+
+    /// Prints the answer on a few lines, or as a whole if the user asks for it.
+    pub(crate) fn print(&self, args: &Arguments, outcome: &Outcome) -> Result<()> {
+        let mut text = summary(&self.built, &self.written, args).to_string();
+        if global().verbose {
+            text += &format!("\n{}", self.built.answer.report());
+        }
+        output::print_verdict(&text, outcome)
+    }
+}
+
+/// Makes a model and writes its files, whose paths are returned.
+fn make(args: &Arguments) -> Result<(Built, Vec<PathBuf>)> {
     let choices = choices(args)?;
     let name = choices.robot.clone().ok_or_else(|| Error::setting(NO_ROBOT))?;
     let lock: Vec<Lock> = choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
@@ -117,18 +161,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         written.push(report_files::write_page(&page, Assets::Inside, &folder)?);
     }
     forget(&journal);
-    let outcome = outcome(&built);
-    if json {
-        written.iter().for_each(|path| output::wrote(path));
-        output::print_json(&built.to_json())?;
-    } else {
-        let mut text = summary(&built, &written, args).to_string();
-        if global().verbose {
-            text += &format!("\n{}", built.answer.report());
-        }
-        output::print_verdict(&text, &outcome)?;
-    }
-    Ok(outcome)
+    Ok((built, written))
 }
 
 /// Names the settings file in an error of a choice that it makes.
@@ -169,14 +202,6 @@ fn choices(args: &Arguments) -> Result<Choices> {
         fit: (!args.fit.is_empty()).then(|| args.fit.clone()),
         ..Choices::default()
     }))
-}
-
-fn outcome(built: &Built) -> Outcome {
-    match built.answer.holds() {
-        false => Outcome::NotConformant,
-        true if built.is_useful() => Outcome::Done,
-        true => Outcome::Vacuous,
-    }
 }
 
 /// Returns the answer on a few lines, with the files that were written.

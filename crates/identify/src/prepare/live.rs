@@ -30,7 +30,8 @@ pub struct LiveLog {
 
 impl LiveLog {
     /// Prepares samples of `robot` that are `step` \[s\] apart, with gaps of `longest_gap` \[s\] at
-    /// most. [`VelocitySource::Quieter`] would need the whole recording, and counts as recorded.
+    /// most. [`VelocitySource::Quieter`] would need the whole recording: velocities are the
+    /// recorded ones unless most recordings of the model had others.
     ///
     /// # Errors
     ///
@@ -44,8 +45,8 @@ impl LiveLog {
         longest_gap: f64,
     ) -> Result<Self> {
         let n = robot.joint_count();
-        let Preparation { torque, gains, cut_off, .. } = preparation;
-        let differentiates = velocity == VelocitySource::Differentiated;
+        let Preparation { torque, gains, cut_off, differentiated, .. } = preparation;
+        let differentiates = *differentiated || velocity == VelocitySource::Differentiated;
         let filter = match (torque, cut_off) {
             (Torque::Compensated, _) | (_, None) => None,
             (_, Some(cut_off)) => Some(LiveFilter::new(robot, *cut_off, step, differentiates)?),
@@ -284,6 +285,7 @@ mod tests {
             gains: Vec::new(),
             cut_off: Some(5.0),
             window: None,
+            differentiated: false,
             columns: Default::default(),
             log: Default::default(),
         }
@@ -316,8 +318,11 @@ mod tests {
                 };
                 let raw = RawLog::new("a", "a", run.clone());
                 let log = &prepare(&[raw], &settings, 5.0, Some(&robot)).unwrap().logs[0];
-                let preparation = Preparation { torque, gains, ..preparation() };
-                let mut live = LiveLog::new(&robot, &preparation, velocity, STEP, STEP).unwrap();
+                // The model knows what its recordings were prepared from.
+                let differentiated = velocity == VelocitySource::Differentiated;
+                let known = Preparation { torque, gains, differentiated, ..preparation() };
+                let velocity = VelocitySource::Recorded;
+                let mut live = LiveLog::new(&robot, &known, velocity, STEP, STEP).unwrap();
                 // The recording was cut by 2.5 periods at its ends.
                 let cut = (run.len() - log.len()) / 2;
                 let (live_delay, mut count) = (live.delay(), 0);

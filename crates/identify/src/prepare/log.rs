@@ -20,6 +20,8 @@ pub struct PreparedLog {
     pub qdd: Vec<f64>,
     /// Torques \[N m\] after the gains, row-major K x n.
     pub tau: Vec<f64>,
+    /// Whether the velocities are the differentiated positions.
+    pub differentiated: bool,
     /// Temperatures of the joints \[°C\], row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
     /// The accelerations at each sample, as far as it and earlier ones alone tell
@@ -48,6 +50,7 @@ impl PreparedLog {
             qd,
             qdd,
             tau,
+            differentiated: false,
             temperatures: vec![],
             before: vec![],
             order: None,
@@ -172,6 +175,7 @@ impl PreparedLog {
                 .map(|values| of(values));
         Self {
             name: self.name.clone(),
+            differentiated: self.differentiated,
             joints: n,
             step: self.step,
             start: self.time(range.start),

@@ -70,6 +70,7 @@ impl<'a> Signals<'a> {
     pub(super) fn log(&self, gains: &[f64], differentiated: bool) -> PreparedLog {
         let n = self.raw.run.joints;
         let mut log = without_motion(self.raw, self.step);
+        log.differentiated = differentiated;
         for (joint, gain) in gains.iter().enumerate() {
             let q = self.filtered(self.even(Run::q, joint));
             let qd = if differentiated {

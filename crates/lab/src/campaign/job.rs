@@ -23,8 +23,8 @@ pub(super) enum Work {
     Suite(SuiteOf, Motion, SuiteRuns),
     /// Motions and rests, with the stride of the samples that are logged.
     Series(MotionSeries, usize),
-    /// An exciting motion.
-    Excitation(ExcitingMotion),
+    /// An exciting motion, with that stride.
+    Excitation(ExcitingMotion, usize),
 }
 
 /// What a suite belongs to.
@@ -70,9 +70,9 @@ impl Job {
             Work::Series(series, stride) => {
                 self.follow(robot, series.start(), series.cycles(), *stride, |k| series.at(k))
             }
-            Work::Excitation(motion) => {
+            Work::Excitation(motion, stride) => {
                 let plan = |k| motion.at(k as f64 * SAMPLE_TIME);
-                self.follow(robot, &motion.centre, ExcitingMotion::cycles(), 1, plan)
+                self.follow(robot, &motion.centre, ExcitingMotion::cycles(), *stride, plan)
             }
         }
     }

@@ -1,5 +1,5 @@
 //! Recordings of a virtual robot that differs from its nominal model, as one data set: the paper's
-//! whole experiment, or a small demo.
+//! whole experiment, a small one, or the logs of the demo.
 //!
 //! The experiment follows Sec. V-B and the appendix of the paper:
 //!
@@ -8,8 +8,8 @@
 //! - Static poses show gravity, slow motions of single joints show friction, and exciting motions
 //!   show the inertial parameters.
 //!
-//! [`CampaignOptions::demo`] has test suites only, some of them to calibrate the sets and to try
-//! them on; they take a second or two to make.
+//! [`CampaignOptions::small`] has test suites only, some of them to calibrate the sets and to try
+//! them on, and [`CampaignOptions::demo`] exciting motions only; they take a second or two to make.
 //!
 //! The files are independent of each other, so that all cores are used, and each is written whole.
 //! A campaign that was stopped continues where it ended, with the same bytes.

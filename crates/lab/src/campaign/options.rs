@@ -44,6 +44,8 @@ pub struct CampaignOptions {
     pub excitation: usize,
     /// Number of exciting motions to validate with.
     pub validation: usize,
+    /// Of the samples of exciting motions, each of this number is logged.
+    pub stride: usize,
     /// The virtual robot.
     pub robot: VirtualRobotParameters,
 }
@@ -65,16 +67,25 @@ impl Default for CampaignOptions {
             one_joint: 6,
             excitation: 6,
             validation: 2,
+            stride: 1,
             robot: VirtualRobotParameters::default(),
         }
     }
 }
 
 impl CampaignOptions {
-    /// Returns the sizes of the demo: 14 motions of 3 s, of which 7 calibrate the sets and 2 are
-    /// held out, with 2 suites of 5 runs per motion, and no other recordings.
+    /// Returns the sizes of the demo: the logs of 8 exciting motions for a model and of 4 to compare
+    /// it with, 125 samples per second, and no other recordings.
     #[must_use]
     pub fn demo() -> Self {
+        let logs = Self { motions: 0, ..Self::default() }.suites_only();
+        Self { excitation: 8, validation: 4, stride: 2, ..logs }
+    }
+
+    /// Returns the sizes of a small experiment: 14 motions of 3 s, of which 7 calibrate the sets and
+    /// 2 are held out, with 2 suites of 5 runs per motion, and no other recordings.
+    #[must_use]
+    pub fn small() -> Self {
         let few = Self { motions: 14, start_points: 2, runs: 5, ..Self::default() };
         let split = Self { calibration_motions: 7, held_out_motions: 2, ..few };
         Self { duration: Some(3.0), ..split.suites_only() }
@@ -92,7 +103,8 @@ impl CampaignOptions {
     pub(super) fn validate(&self) -> Result<()> {
         let count = |name, given: usize, least: f64| (name, given as f64, [least, MOST]);
         for (name, given, [least, most]) in [
-            count("motions", self.motions, 1.0),
+            count("motions", self.motions, f64::from(u8::from(self.has_suites_only()))),
+            count("samples of exciting motions per logged one", self.stride, 1.0),
             ("start points", self.start_points as f64, [1.0, MOST_START_POINTS]),
             count("runs", self.runs, 1.0),
             count("poses at rest", self.rest, 0.0),
@@ -108,7 +120,7 @@ impl CampaignOptions {
         }
         let (motions, held_out) =
             (self.motions, self.held_out_motions.saturating_add(self.calibration_motions));
-        if motions <= held_out {
+        if motions <= held_out && held_out > 0 {
             return Err(Error::NoTrainingMotion { motions, held_out });
         }
         Ok(())

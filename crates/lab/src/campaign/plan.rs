@@ -54,7 +54,7 @@ pub(super) fn jobs(robot: &VirtualRobot, options: &CampaignOptions) -> Vec<Job> 
         let mut random = stream(kind);
         for index in 0..count {
             let motion = ExcitingMotion::random(nominal, &mut random);
-            jobs.push(Job::identification(name, index, Work::Excitation(motion)));
+            jobs.push(Job::identification(name, index, Work::Excitation(motion, options.stride)));
         }
     }
     jobs

@@ -23,11 +23,45 @@ such file. `{MARK}` holds the options.
 ## What to type
 
     reachtube inspect --data .
-{identify}\
-\x20   reachtube conform --robot lwa4p --data . --torque compensated --out model.json
+{identify}{make}
 
-`--robot lwa4p` is the nominal model that the arm's controller has. Without `--suites`, `conform`
-takes all suites.
+`--robot lwa4p` is the nominal model that the arm's controller has.
+{suites}
+## Columns and numbers
+
+`t` s, `q` rad, `qd` rad/s, `tau` N m, `temp` °C. Samples are 4 ms apart{slower}.
+Positions have 6 decimals (the encoders have steps of {step:.1e} rad), velocities 5, torques 3 (the
+controller commands whole mN m), temperatures 1. In `runs.csv`, `temperature` is the mean over the
+joints when the recording begins, and `simulated` marks all recordings, so that pages about them say
+so.
+
+## What the nominal model does not know
+
+| parameter | value |
+|---|---|
+{parameters}",
+        seed = options.seed,
+        files = files(options),
+        identify = if options.rest == 0 { "" } else { IDENTIFY },
+        make = if options.motions == 0 { MODEL } else { CONFORM },
+        suites = if options.motions == 0 { "" } else { SUITES },
+        slower = match (options.rest, options.stride) {
+            (0, 1) => String::new(),
+            (0, stride) => format!(", {} ms in exciting motions", 4 * stride),
+            _ => ", 20 ms in `rest/`, where the arm mostly rests".into(),
+        },
+        step = options.robot.encoder_step,
+        parameters = parameters(options),
+    )
+}
+
+const MODEL: &str =
+    "    reachtube model --robot lwa4p --data excitation --torque motor --out model";
+
+const CONFORM: &str =
+    "    reachtube conform --robot lwa4p --data . --torque compensated --out model.json";
+
+const SUITES: &str = "Without `--suites`, `conform` takes all suites.
 
 ## How a suite is recorded
 
@@ -37,27 +71,7 @@ Coulomb friction. Each run follows the motion closed loop to the suite's startin
 open loop from there: it applies the recorded u, and the controller adds the nominal model's gravity
 at the measured position and Coulomb friction at the planned velocity. Run 1 of a suite is cold. The
 joints warm up by friction work and cool in the pause between two runs.
-
-## Columns and numbers
-
-`t` s, `q` rad, `qd` rad/s, `tau` N m, `temp` °C. Samples are 4 ms apart, 20 ms in `rest/`, where
-the arm mostly rests. Positions have 6 decimals (the encoders have steps of {step:.1e} rad),
-velocities 5, torques 3 (the controller commands whole mN m), temperatures 1. In `runs.csv`,
-`temperature` is the mean over the joints when the recording begins, and `simulated` marks all
-recordings, so that pages about them say so.
-
-## What the nominal model does not know
-
-| parameter | value |
-|---|---|
-{parameters}",
-        seed = options.seed,
-        files = files(options),
-        identify = if options.has_suites_only() { "" } else { IDENTIFY },
-        step = options.robot.encoder_step,
-        parameters = parameters(options),
-    )
-}
+";
 
 const IDENTIFY: &str = "    reachtube identify --robot lwa4p --rest rest --one-joint one-joint \\
         --excitation excitation --validate validation --out identified.toml --report identified
@@ -66,11 +80,12 @@ const IDENTIFY: &str = "    reachtube identify --robot lwa4p --rest rest --one-j
 fn files(options: &CampaignOptions) -> String {
     let CampaignOptions { motions, start_points, runs, longest, rest, one_joint, .. } = options;
     let folder = if options.has_suites_only() { "M1a/" } else { "suites/M1a/" };
-    let mut lines = format!(
+    let suites = format!(
         "| `{folder}`, ... | {suites} test suites: {motions} random point-to-point motions, \
          {start_points} starting points each, {runs} runs of up to {longest} s | `compensated` |\n",
         suites = motions * start_points,
     );
+    let mut lines = if *motions == 0 { String::new() } else { suites };
     let motor = [
         (
             "rest",

@@ -62,8 +62,8 @@ pub struct RecordedCampaign {
 /// use reachtube_robot::Robot;
 ///
 /// let folder = tempfile::tempdir().unwrap();
-/// let small = CampaignOptions { motions: 2, held_out_motions: 1, ..CampaignOptions::demo() };
-/// let few = CampaignOptions { calibration_motions: 0, runs: 2, longest: 0.5, ..small };
+/// let few = CampaignOptions { motions: 2, held_out_motions: 1, ..CampaignOptions::small() };
+/// let few = CampaignOptions { calibration_motions: 0, runs: 2, longest: 0.5, ..few };
 /// let options = CampaignOptions { duration: Some(1.0), ..few };
 /// let recorded = record(&Robot::lwa4p(), &options, folder.path(), &|_done, _total| ())?;
 /// assert_eq!(recorded.training, ["M1a", "M1b"]);

@@ -28,7 +28,7 @@ fn small(seed: u64) -> CampaignOptions {
     }
 }
 
-fn demo(seed: u64) -> CampaignOptions {
+fn suites(seed: u64) -> CampaignOptions {
     let few =
         CampaignOptions { motions: 2, calibration_motions: 0, held_out_motions: 1, ..small(1) };
     CampaignOptions { seed, duration: Some(2.0), longest: 5.0, runs: 5, ..few.suites_only() }
@@ -172,7 +172,7 @@ fn options_out_of_range_are_refused() {
     let endless =
         VirtualRobotParameters { delay_cycles: f64::INFINITY, ..VirtualRobotParameters::default() };
     for (options, words) in [
-        (CampaignOptions { motions: 0, ..small(1) }, "motions: 0 is not in 1"),
+        (CampaignOptions { motions: 0, ..suites(1) }, "motions: 0 is not in 1"),
         (CampaignOptions { start_points: 27, ..small(1) }, "27 is not in 1 to 26"),
         (CampaignOptions { runs: 0, ..small(1) }, "runs: 0 is not in 1"),
         (
@@ -180,11 +180,11 @@ fn options_out_of_range_are_refused() {
             "longest run in s: NaN is not in 0.1 to 3600",
         ),
         (
-            CampaignOptions { duration: Some(f64::NAN), ..demo(1) },
+            CampaignOptions { duration: Some(f64::NAN), ..suites(1) },
             "a motion in s: NaN is not in 0.5 to 60",
         ),
-        (CampaignOptions { held_out_motions: 2, ..demo(1) }, "2 are held out"),
-        (CampaignOptions { robot: endless, ..demo(1) }, "delay_cycles = inf is outside"),
+        (CampaignOptions { held_out_motions: 2, ..suites(1) }, "2 are held out"),
+        (CampaignOptions { robot: endless, ..suites(1) }, "delay_cycles = inf is outside"),
     ] {
         let error = run(&options, folder.path()).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
@@ -195,7 +195,7 @@ fn options_out_of_range_are_refused() {
 #[test]
 fn a_demo_holds_out_its_last_motions_and_conformance_of_the_others_is_verified() {
     let folder = tempfile::tempdir().unwrap();
-    let recorded = run(&demo(1), folder.path()).unwrap();
+    let recorded = run(&suites(1), folder.path()).unwrap();
     assert_eq!((&recorded.training, &recorded.check), (&names("M1"), &names("M2")));
     assert_eq!(recorded.runs, 20);
     let text = std::fs::read_to_string(folder.path().join("M1a/M1a_01.csv")).unwrap();

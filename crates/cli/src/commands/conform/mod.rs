@@ -6,4 +6,4 @@ mod sets;
 mod settings;
 
 pub(crate) use arguments::{Arguments, GROUPS};
-pub(crate) use run::{page_of, run};
+pub(crate) use run::run;

@@ -117,7 +117,7 @@ fn job(args: &Arguments) -> Result<(Job, Option<Preparation>)> {
 }
 
 /// Returns the page about the recordings that the sets were found for, from what is in memory.
-pub(crate) fn page_of(answer: &Answer, front_end: FrontEnd) -> Result<Page> {
+fn page_of(answer: &Answer, front_end: FrontEnd) -> Result<Page> {
     let Answer { model, problem, .. } = answer;
     let (check, reach) = (answer.check(), answer.reach()?);
     let sources = Sources { model, problem, reach: &reach, check: &check, front_end };
