@@ -42,7 +42,7 @@ impl Drive for Kinematic {
         let grid = grid(path, run, self.0.robot())?;
         let (n, equations) = (run.joints, self.0.settings.equations);
         let still = vec![0.0; n];
-        let start = if run.before.is_empty() { &still } else { &run.before };
+        let start = run.before.get(2 * n..).unwrap_or(&still);
         let at = |time: &f64| {
             let part = equations.part_left(*time);
             start.iter().map(move |acceleration| part * acceleration)

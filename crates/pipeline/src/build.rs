@@ -14,7 +14,9 @@ use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_R
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
-use crate::findings::{ignored_motors, impossible_links, measures_the_filter, unless_accepted};
+use crate::findings::{
+    ignored_motors, impossible_links, impossible_links_used, measures_the_filter, unless_accepted,
+};
 use crate::first_choices::first_choices;
 use crate::held_out::Split;
 use crate::horizon::{
@@ -179,7 +181,11 @@ impl Decided<'_> {
         let Evidence { torque, settings, cut_off, trial, .. } = *self.evidence;
         let Nominal { robot, logs, findings, is_identified, .. } = chosen;
         let mut findings = unless_accepted(findings, given);
-        findings.extend(impossible_links(self.robot, is_identified));
+        let mut notes = read.0;
+        match is_identified {
+            true => findings.extend(impossible_links(self.robot)),
+            false => notes.extend(impossible_links_used(self.robot)),
+        }
         let has_folds = is_identified && torque != Torque::Compensated;
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
         let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
@@ -215,7 +221,7 @@ impl Decided<'_> {
         findings.extend(read.1.into_iter().chain(held_out.finding(choices)));
         Ok(Built {
             answer,
-            notes: read.0.into_iter().chain(ignored_motors(&robot, torque)).collect(),
+            notes: notes.into_iter().chain(ignored_motors(&robot, torque)).collect(),
             robot,
             choices: chooser.choices,
             made: chooser.made,

@@ -28,20 +28,21 @@ pub(crate) fn implausible(result: &Implausible) -> Finding {
 }
 
 /// Makes the warning that links of a description have inertias that no body has, if some have.
-pub(crate) fn impossible_links(robot: &Robot, is_identified: bool) -> Option<Finding> {
-    let links = robot.description().impossible_links();
-    let used = match is_identified {
-        true => "only the geometry of the description is used",
-        false => "they are used all the same, since together they explain the torques",
-    };
-    let links_of = links.join(", ");
-    let text =
-        format!("no body has the mass and inertia of the links that {links_of} move: {used}");
-    (!links.is_empty()).then(|| Finding {
-        severity: Severity::Warning,
-        place: Some(links_of),
-        ..contradiction(&text)
-    })
+pub(crate) fn impossible_links(robot: &Robot) -> Option<Finding> {
+    let text = with_impossible_links(robot, "only the geometry of the description is used")?;
+    let place = Some(robot.description().impossible_links().join(", "));
+    Some(Finding { severity: Severity::Warning, place, ..contradiction(&text) })
+}
+
+/// Returns the note that such links are used, as where the description explains the torques.
+pub(crate) fn impossible_links_used(robot: &Robot) -> Option<String> {
+    with_impossible_links(robot, "they are used, since together they explain the torques")
+}
+
+fn with_impossible_links(robot: &Robot, what: &str) -> Option<String> {
+    let links = robot.description().impossible_links().join(", ");
+    (!links.is_empty())
+        .then(|| format!("no body has the mass and inertia of the links that {links} move: {what}"))
 }
 
 /// Returns a note if torques were measured behind the gears and the description has motors.

@@ -62,6 +62,7 @@ pub(crate) fn first_choices<'a, 'b: 'a>(
         equations,
         nominal,
         allowance,
+        from_past: false,
         largest_outside: chooser.choices.largest_outside(),
         largest_growth: chooser.choices.largest_growth.unwrap_or(LARGEST_GROWTH),
         folds: &[],

@@ -1,11 +1,13 @@
 //! A conformance over windows, as every step of the pipeline uses it.
 
+use std::collections::BTreeMap;
+
 use reachtube_abstraction::ExpansionPoint;
 use reachtube_arm::{ArmSettings, Basis, Equations};
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::{Answer, FitSettings, Job, Noise, Problem, Progress, Settings};
 use reachtube_files::hex;
-use reachtube_recordings::{MemoryRuns, RunSource, Torque};
+use reachtube_recordings::{MemoryRuns, ReadOptions, RunEntry, RunSource, Torque};
 use reachtube_robot::Robot;
 use reachtube_scalar::number::counted;
 use sha2::{Digest, Sha256};
@@ -29,6 +31,9 @@ pub(crate) struct Trial<'a> {
     pub equations: Equations,
     /// Where nominal motions start.
     pub nominal: NominalStart,
+    /// Whether they start where the samples up to the start alone tell, and X0 has the error of
+    /// that.
+    pub from_past: bool,
     /// Radii added to X0 and U, 3n, if it is given.
     pub allowance: Option<Vec<f64>>,
     /// The part of the rows of motions left out that may leave the sets without an allowance, and
@@ -125,7 +130,7 @@ impl Trial<'_> {
         let settings = Settings {
             noise: Noise::Fitted,
             sensor_noise: Some(self.sensor_noise.clone()),
-            nominal: self.nominal,
+            nominal: if self.from_past { NominalStart::Mean } else { self.nominal },
             ..Settings::default()
         };
         let arm = ArmSettings {
@@ -137,7 +142,19 @@ impl Trial<'_> {
             Torque::Link => self.robot.without_motors(),
             Torque::Motor | Torque::Compensated => self.robot.clone(),
         };
-        let setup = Basis::from(robot).setup(arm, settings)?;
+        let mut setup = Basis::from(robot).setup(arm, settings)?;
+        if self.from_past {
+            setup = setup.starting_at(known_starts(&windows));
+        }
         Ok(Job::new(setup, windows).fit(self.fit.clone()))
     }
+}
+
+/// Returns the states at the start of windows, as far as the samples up to it alone tell.
+fn known_starts(windows: &MemoryRuns) -> BTreeMap<String, Vec<f64>> {
+    let known = |(index, entry): (usize, &RunEntry)| {
+        let run = windows.read(index, &ReadOptions::default()).ok()?;
+        Some((entry.suite.clone()?, run.before.get(..2 * run.joints)?.to_vec()))
+    };
+    windows.runs().iter().enumerate().filter_map(known).collect()
 }

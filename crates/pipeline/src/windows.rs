@@ -135,6 +135,6 @@ fn run(log: &PreparedLog) -> Run {
     let times = (0..log.len()).map(time).collect();
     let run = Run::new(log.joints, times, states, log.tau.clone())
         .expect("a window has one row of finite numbers for each sample");
-    let before = log.before.get(..log.joints).unwrap_or_default().to_vec();
+    let before = log.before.get(..3 * log.joints).unwrap_or_default().to_vec();
     Run { temperatures: log.temperatures.clone(), before, ..run }
 }

@@ -20,7 +20,7 @@ fn run(before: f64, motion: impl Fn(f64) -> [f64; 2]) -> Run {
     let states = times.iter().flat_map(state).collect();
     let count = times.len();
     let run = Run::new(6, times, states, vec![17.0; 6 * count]).unwrap();
-    Run { before: vec![before; 6], ..run }
+    Run { before: [vec![0.0; 12], vec![before; 6]].concat(), ..run }
 }
 
 fn answer(equations: Equations, runs: Vec<Run>) -> Answer {

@@ -20,11 +20,12 @@ fn three_commands_lead_to_a_verified_stop_with_its_page_in_short_answers() {
         let arguments = command.strip_prefix("reachtube ").unwrap();
         lab.run(&format!("{arguments}{more}"))
     };
-    is_short_of_the_demo(&lab, &run(demo, " --quiet").exits(0).stdout);
+    is_short_of_the_demo(&run(demo, " --quiet").exits(0).stdout);
     let stop = run(stop, " --every 20").exits(0).stdout;
     assert!(stop.starts_with("stands: from each of "), "{stop}");
     assert!(lab.read("stops/stop.html").contains("Annex B"));
     let safe = run(verify, "").exits(0).stdout;
     assert!(safe.starts_with("safe: "), "{safe}");
-    assert_eq!(lab.names("cell"), ["M1a.svg", "verify.html"]);
+    assert!(lab.names("cell").contains(&"verify.html".to_string()));
+    assert!(lab.read("demo/page/report.html").contains("Conformant and useful"));
 }

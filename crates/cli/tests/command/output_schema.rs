@@ -113,11 +113,12 @@ fn a_demo_fits_the_schema() {
     assert_eq!(lab.read("demo/cell.toml"), "# mine");
     assert!(lab.read("demo/brakes.toml").contains("torque"));
     fits("demo", &demo);
-    for verdict in [&demo["model"], &demo["held_out"]] {
+    for verdict in [&demo["model"], &demo["check"]] {
         names_what_it_is_of(verdict, &demo["model"], None);
     }
+    assert_eq!([&demo["model"]["useful"], &demo["check"]["verdict"]["conformant"]], [true, true]);
     // Its pages say that nothing was measured, and lead to each other.
-    for (page, other) in [("report", "held-out"), ("held-out", "report")] {
+    for (page, other) in [("page", "held-out"), ("held-out", "page")] {
         let html = lab.read(&format!("demo/{page}/report.html"));
         assert!(html.contains("<span class=\"badge\">simulated data</span>"), "{page}");
         assert!(html.contains(&format!("href=\"../{other}/report.html\"")), "{page}");

@@ -343,6 +343,12 @@ impl Setup {
         self
     }
 
+    /// Returns the same setup with nominal initial states of suites by their names, N each.
+    #[must_use]
+    pub fn starting_at(self, nominal_starts: BTreeMap<String, Vec<f64>>) -> Self {
+        Self { nominal_starts, ..self }
+    }
+
     /// Returns what a fit may move.
     ///
     /// # Errors

@@ -24,8 +24,8 @@ pub struct PreparedLog {
     pub differentiated: bool,
     /// Temperatures of the joints \[°C\], row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
-    /// The accelerations at each sample, as far as it and earlier ones alone tell
-    /// ([`Run::before`]), rad/s², row-major K x n; empty if unknown.
+    /// Positions, velocities and accelerations at each sample, as far as it and earlier ones alone
+    /// tell ([`Run::before`]), rad, rad/s and rad/s², row-major K x 3n; empty if unknown.
     ///
     /// [`Run::before`]: reachtube_recordings::Run::before
     pub before: Vec<f64>,
@@ -184,7 +184,10 @@ impl PreparedLog {
             qdd,
             tau,
             temperatures,
-            before: of(&self.before),
+            before: self
+                .before
+                .get(range.start * 3 * n..range.end * 3 * n)
+                .map_or(vec![], <[f64]>::to_vec),
             order: self.order,
             slowest,
         }

@@ -3,32 +3,53 @@ use nalgebra::DMatrix;
 /// Samples that an estimate needs at least.
 const FEWEST: usize = 5;
 
-/// Estimates the acceleration of a joint at its last sample from the samples before it, and nothing
-/// later: by least squares, recorded velocities follow a parabola; where there are none, positions
-/// follow a cubic.
+/// Estimates position, velocity and acceleration of a joint at its last sample from that sample and
+/// the ones before it, and nothing later: by least squares, recorded velocities follow a parabola,
+/// and positions its integral; where there are no velocities, positions follow a cubic.
 #[derive(Debug)]
 pub(super) struct Past {
-    /// The weights of the velocities, or of the positions, the oldest first.
-    weights: Vec<f64>,
+    /// The weights of the velocities, or of the positions, in the coefficients of the polynomial,
+    /// the oldest sample first.
+    weights: DMatrix<f64>,
+    has_velocities: bool,
+    step: f64,
 }
 
 impl Past {
     /// Makes the estimate from `span` \[s\] of samples that are `step` \[s\] apart.
     pub(super) fn new(span: f64, step: f64, has_velocities: bool) -> Self {
         let count = ((span / step).round() as usize + 1).max(FEWEST);
+        let degree = if has_velocities { 2 } else { 3 };
         let time = |k: usize| (k + 1) as f64 - count as f64;
-        let (degree, power, factor) =
-            if has_velocities { (2, 1, step.recip()) } else { (3, 2, 2.0 * step.powi(-2)) };
         let powers = DMatrix::from_fn(count, degree + 1, |k, power| time(k).powi(power as i32));
         let inverse = powers.svd(true, true).pseudo_inverse(0.0);
-        let inverse = inverse.expect("both factors were computed");
-        Self { weights: inverse.row(power).iter().map(|weight| factor * weight).collect() }
+        Self { weights: inverse.expect("both factors were computed"), has_velocities, step }
     }
 
-    /// Returns the acceleration at the last of some velocities or positions; 0 of too few.
-    pub(super) fn acceleration(&self, values: &[f64]) -> f64 {
-        let Some(first) = values.len().checked_sub(self.weights.len()) else { return 0.0 };
-        self.weights.iter().zip(&values[first..]).map(|(weight, value)| weight * value).sum()
+    /// Returns position, velocity and acceleration at the last of some samples, whose positions and
+    /// velocities are given. Of too few samples, the acceleration is 0.
+    pub(super) fn at_last(&self, q: &[f64], qd: &[f64]) -> [f64; 3] {
+        let (count, step) = (self.weights.ncols(), self.step);
+        let Some(first) = q.len().checked_sub(count) else {
+            let last = |values: &[f64]| values.last().copied().unwrap_or_default();
+            return [last(q), last(qd), 0.0];
+        };
+        let values = if self.has_velocities { &qd[first..] } else { &q[first..] };
+        let coefficient = |power: usize| -> f64 {
+            self.weights.row(power).iter().zip(values).map(|(weight, value)| weight * value).sum()
+        };
+        if !self.has_velocities {
+            let [q, qd, half] = [0, 1, 2].map(coefficient);
+            return [q, qd / step, 2.0 * half * step.powi(-2)];
+        }
+        let [qd, slope, curve] = [0, 1, 2].map(coefficient);
+        // How far the joint has moved, from the integral of the velocity, at each sample.
+        let moved = |k: usize| {
+            let time = (k + 1) as f64 - count as f64;
+            step * time * (qd + time * (0.5 * slope + time * curve / 3.0))
+        };
+        let start = q[first..].iter().enumerate().map(|(k, q)| q - moved(k)).sum::<f64>();
+        [start / count as f64, qd, slope / step]
     }
 }
 
@@ -37,18 +58,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_acceleration_of_a_cubic_is_known_from_its_past() {
+    fn the_state_and_acceleration_of_a_cubic_are_known_from_its_past() {
         let step = 0.01;
         let at = |k: usize| 0.3 + step * k as f64;
         let position = |k: usize| 1.0 - 2.0 * at(k) + 0.5 * at(k).powi(2) + 3.0 * at(k).powi(3);
         let velocity = |k: usize| -2.0 + at(k) + 9.0 * at(k).powi(2);
         let q: Vec<f64> = (0..30).map(position).collect();
         let qd: Vec<f64> = (0..30).map(velocity).collect();
-        for (values, has_velocities) in [(&q, false), (&qd, true)] {
+        for has_velocities in [false, true] {
             let past = Past::new(0.17, step, has_velocities);
-            let error = past.acceleration(values) - (1.0 + 18.0 * at(29));
-            assert!(error.abs() < 1e-8, "{error}");
-            assert_eq!(past.acceleration(&values[..3]), 0.0);
+            let found = past.at_last(&q, &qd);
+            for (found, known) in found.iter().zip([q[29], qd[29], 1.0 + 18.0 * at(29)]) {
+                assert!((found - known).abs() < 1e-8, "{found} {known}");
+            }
+            assert_eq!(past.at_last(&q[..3], &qd[..3]), [q[2], qd[2], 0.0]);
         }
     }
 }

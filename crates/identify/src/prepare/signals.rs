@@ -48,20 +48,23 @@ impl<'a> Signals<'a> {
         Lag::contradict(&lags, self.step)
     }
 
-    /// Returns the accelerations as far as the last `span` \[s\] alone tells, K x n.
+    /// Returns positions, velocities and accelerations as far as the last `span` \[s\] alone tells,
+    /// K x 3n.
     pub(super) fn before(&self, span: f64, differentiated: bool) -> Vec<f64> {
         let n = self.raw.run.joints;
         let past = Past::new(span, self.step, !differentiated);
         let mut rows = Vec::new();
         for joint in 0..n {
-            let values = match differentiated {
-                true => self.even(Run::q, joint),
+            let q = self.even(Run::q, joint);
+            let qd = match differentiated {
+                true => derivative(&q, self.step),
                 false => self.even(Run::qd, joint),
             };
-            rows.resize(n * values.len(), 0.0);
-            let column: Vec<f64> =
-                (0..values.len()).map(|k| past.acceleration(&values[..=k])).collect();
-            set_column(&mut rows, joint, n, &column);
+            rows.resize(3 * n * q.len(), 0.0);
+            for (k, row) in rows.chunks_exact_mut(3 * n).enumerate() {
+                let known = past.at_last(&q[..=k], &qd[..=k]);
+                known.iter().enumerate().for_each(|(part, x)| row[part * n + joint] = *x);
+            }
         }
         rows
     }

@@ -88,6 +88,21 @@ fn the_folder_is_a_data_set_of_all_recordings() {
     }
 }
 
+/// A demo has nothing but logs, of motor torques, 125 samples per second.
+#[test]
+fn a_demo_has_logs_alone() {
+    let few = CampaignOptions { excitation: 1, validation: 1, ..CampaignOptions::demo() };
+    let folder = recorded(&few);
+    let data = DataSet::open(folder.path()).unwrap();
+    let kinds: Vec<_> = data.runs().iter().map(|run| run.kind.as_deref().unwrap()).collect();
+    assert_eq!((kinds, data.suites().len()), (vec!["excitation", "validation"], 0));
+    let run = data.read(0, &ReadOptions::default()).unwrap();
+    assert_eq!((run.len(), run.times[1], run.duration()), (2501, 0.008, 20.0));
+    let readme = std::fs::read_to_string(folder.path().join("README.md")).unwrap();
+    assert!(readme.contains("4 ms apart, 8 ms in exciting motions.\n"), "{readme}");
+    assert!(readme.contains("reachtube model --robot lwa4p") && !readme.contains("suites/"));
+}
+
 #[test]
 fn a_seed_gives_the_same_bytes_and_another_seed_others() {
     let [once, again, other] =
