@@ -14,9 +14,7 @@ use crate::choices::{Choice, Choices, LARGEST_GROWTH, LARGEST_OUTSIDE, LARGEST_R
 use crate::chooser::Chooser;
 use crate::compared::{Compared, HeldOut};
 use crate::error::{Error, Result};
-use crate::findings::{
-    ignored_motors, impossible_links, impossible_links_used, measures_the_filter, unless_accepted,
-};
+use crate::findings::{ignored_motors, impossible_links, measures_the_filter, unless_accepted};
 use crate::first_choices::first_choices;
 use crate::held_out::Split;
 use crate::horizon::{
@@ -24,7 +22,7 @@ use crate::horizon::{
     try_horizons, try_longer,
 };
 use crate::remedies::TooWide;
-use crate::robot::{Evidence, Nominal, prepare_for};
+use crate::robot::{Evidence, Nominal, are_differentiated, prepare_for};
 use crate::sorted::{Sorted, WARMTH, unknown_warmth};
 use crate::steps::{Steps, digest};
 use crate::stretches::{Use, check_used, entries, left_out};
@@ -181,11 +179,8 @@ impl Decided<'_> {
         let Evidence { torque, settings, cut_off, trial, .. } = *self.evidence;
         let Nominal { robot, logs, findings, is_identified, .. } = chosen;
         let mut findings = unless_accepted(findings, given);
-        let mut notes = read.0;
-        match is_identified {
-            true => findings.extend(impossible_links(self.robot)),
-            false => notes.extend(impossible_links_used(self.robot)),
-        }
+        let (used, unlikely) = impossible_links(self.robot, is_identified);
+        findings.extend(unlikely);
         let has_folds = is_identified && torque != Torque::Compensated;
         let folds = if has_folds { self.evidence.folds(self.robot)? } else { Vec::new() };
         let mut trial = Trial { robot: robot.clone(), folds: &folds, ..trial.clone() };
@@ -212,8 +207,7 @@ impl Decided<'_> {
             false => wide.remedies(self.evidence, self.robot)?,
         };
         // What was held out.
-        let raw: Vec<RawLog> =
-            split.held_out.iter().map(|recording| RawLog::clone(&recording.log)).collect();
+        let raw: Vec<_> = split.held_out.iter().map(|other| RawLog::clone(&other.log)).collect();
         let held_back = prepare_for(&raw, &robot, torque, settings, cut_off)?;
         let held_back = Prepared { logs: &held_back, divides: false, ..recordings };
         let Compared { held_out, shown, shown_held_out } =
@@ -221,7 +215,7 @@ impl Decided<'_> {
         findings.extend(read.1.into_iter().chain(held_out.finding(choices)));
         Ok(Built {
             answer,
-            notes: notes.into_iter().chain(ignored_motors(&robot, torque)).collect(),
+            notes: read.0.into_iter().chain(used).chain(ignored_motors(&robot, torque)).collect(),
             robot,
             choices: chooser.choices,
             made: chooser.made,
@@ -356,14 +350,13 @@ fn choose_equations(
 
 /// Returns what was done to logs, to do it to others.
 fn preparation(choices: &Choices, torque: Torque, logs: &[PreparedLog]) -> Preparation {
-    let differentiated = logs.iter().filter(|log| log.differentiated).count();
     let window = choices.horizon.filter(|_| torque != Torque::Compensated);
     Preparation {
         torque,
         gains: choices.gains.clone(),
         cut_off: choices.cut_off,
         window,
-        differentiated: 2 * differentiated > logs.len(),
+        differentiated: are_differentiated(logs),
         columns: choices.columns.clone(),
         log: choices.log.clone(),
     }

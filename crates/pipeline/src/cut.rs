@@ -12,6 +12,7 @@ use reachtube_robot::Robot;
 
 use crate::error::Result;
 use crate::one_motion::{link_notes, links};
+use crate::robot::are_differentiated;
 use crate::sorted::{origins_of, read_logs, without_suite_note};
 use crate::stretches::{Use, in_stretches};
 use crate::windows::{Origin, Prepared, windows_of};
@@ -65,9 +66,8 @@ impl Cut {
         let of = raw.len();
         let what = Use { cut_off: cut_off.unwrap_or(f64::INFINITY), from_start: false };
         let (raw, origins, left_out) = in_stretches(&raw, &whole, what)?;
-        let origins = &origins;
         notes.extend(left_out);
-        let logs = match cut_off {
+        let logs: Vec<_> = match cut_off {
             Some(cut_off) => {
                 let prepared = prepare(&raw, &settings, cut_off, Some(robot))?;
                 notes.extend(prepared.changes);
@@ -78,7 +78,7 @@ impl Cut {
         let simulated = any_simulated(raw.iter().map(|log| &*log.file));
         let prepared = Prepared {
             logs: &logs,
-            origins,
+            origins: &origins,
             from_start: false,
             divides: false,
             simulated,
@@ -92,7 +92,7 @@ impl Cut {
             gains: Vec::new(),
             cut_off,
             window: Some(horizon),
-            differentiated: false,
+            differentiated: are_differentiated(&logs),
             columns: ColumnSettings::default(),
             log: LogSettings::default(),
         };

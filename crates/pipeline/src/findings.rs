@@ -27,22 +27,26 @@ pub(crate) fn implausible(result: &Implausible) -> Finding {
     Finding { severity, ..contradiction(&text) }
 }
 
-/// Makes the warning that links of a description have inertias that no body has, if some have.
-pub(crate) fn impossible_links(robot: &Robot) -> Option<Finding> {
-    let text = with_impossible_links(robot, "only the geometry of the description is used")?;
-    let place = Some(robot.description().impossible_links().join(", "));
-    Some(Finding { severity: Severity::Warning, place, ..contradiction(&text) })
-}
-
-/// Returns the note that such links are used, as where the description explains the torques.
-pub(crate) fn impossible_links_used(robot: &Robot) -> Option<String> {
-    with_impossible_links(robot, "they are used, since together they explain the torques")
-}
-
-fn with_impossible_links(robot: &Robot, what: &str) -> Option<String> {
+/// Says that links of a description have inertias that no body has, if some have: a warning where
+/// the robot was identified without them, else a note.
+pub(crate) fn impossible_links(
+    robot: &Robot,
+    is_identified: bool,
+) -> (Option<String>, Option<Finding>) {
     let links = robot.description().impossible_links().join(", ");
-    (!links.is_empty())
-        .then(|| format!("no body has the mass and inertia of the links that {links} move: {what}"))
+    if links.is_empty() {
+        return (None, None);
+    }
+    let text = format!("no body has the mass and inertia of the links that {links} move");
+    if !is_identified {
+        return (
+            Some(format!("{text}; they are used, since together they explain the torques")),
+            None,
+        );
+    }
+    let text = format!("{text}: only the geometry of the description is used");
+    let severity = Severity::Warning;
+    (None, Some(Finding { severity, place: Some(links), ..contradiction(&text) }))
 }
 
 /// Returns a note if torques were measured behind the gears and the description has motors.

@@ -321,6 +321,11 @@ pub(crate) fn prepare_for(
     Ok(prepare(raw, settings, cut_off, Some(robot))?.logs)
 }
 
+/// Returns whether the velocities of most logs are the differentiated positions.
+pub(crate) fn are_differentiated(logs: &[PreparedLog]) -> bool {
+    2 * logs.iter().filter(|log| log.differentiated).count() > logs.len()
+}
+
 pub(crate) fn percent(part: f64) -> String {
     if part.is_finite() { format!("{:.0} %", 100.0 * part) } else { "all".into() }
 }

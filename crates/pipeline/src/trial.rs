@@ -144,7 +144,7 @@ impl Trial<'_> {
         };
         let mut setup = Basis::from(robot).setup(arm, settings)?;
         if self.from_past {
-            setup = setup.starting_at(known_starts(&windows));
+            setup.nominal_starts = known_starts(&windows);
         }
         Ok(Job::new(setup, windows).fit(self.fit.clone()))
     }

@@ -1,7 +1,7 @@
-"""Edits the files of a small experiment in many ways, and compares each answer of the second program with the
-one that it must give. `tools/recheck/run` writes the files.
+"""Edits the files of a small experiment in many ways, and compares each answer of the second
+program with the one that it must give. `tools/recheck/run` writes the files.
 
-    python tools/recheck/mutants DEMO
+    python tools/recheck/mutants FOLDER
 """
 
 import contextlib

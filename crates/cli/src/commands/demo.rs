@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser};
+use clap::{Args, FromArgMatches};
 use reachtube::campaign::{CampaignOptions, record};
 use reachtube::conform::{Check, Keep};
 use reachtube::pipeline::ModelOutput;
@@ -12,7 +12,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{check, model};
-use crate::cli::{Cli, Command};
 use crate::error::Result;
 use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
@@ -33,13 +32,14 @@ Example:
   reachtube demo --out demo
       then open demo/page/report.html in a browser
 
-Exit codes: as those of `model` and `check`.";
+Exit codes: 0 conformant and useful, and later logs stay in the sets; others as `model` and `check`
+have them.";
 
 /// Record logs of a simulated arm, make a model of them, and check it on other logs
 ///
 /// The commands `model` and `check` are shown as one types them. The folder receives the logs, the
-/// model, its page, limits.toml with two choices for `model`, and cell.toml and brakes.toml for
-/// `verify` and `stop`. Of these three, files that exist are kept.
+/// model, its page, limits.toml with a choice for `model`, and cell.toml and brakes.toml for `verify`
+/// and `stop`. The last three are kept where they exist.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
@@ -84,10 +84,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let [limits, logs] = [args.out.join(FILES[0].0), folder.join("excitation")];
     let [limits, logs, out] = [&limits, &logs, &args.out].map(|path| shown(path));
     let words = ["--settings", &limits, "--robot", "lwa4p", "--data", &logs, "--torque", "motor"];
-    let Command::Model(own) = typed("model", &[&words[..], &["--out", &out]].concat(), json)?
-    else {
-        unreachable!("its name is `model`");
-    };
+    let own: model::Arguments = typed("model", &[&words[..], &["--out", &out]].concat(), json)?;
     let made = model::Made::new(&own)?;
     let outcome = made.outcome();
     if !json {
@@ -96,9 +93,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     }
     let [file, others] = [&model_file, &folder.join("validation")].map(|path| shown(path));
     let words = ["--model", &file, "--data", &others];
-    let Command::Check(others) = typed("check", &words, json)? else {
-        unreachable!("its name is `check`");
-    };
+    let others: check::Arguments = typed("check", &words, json)?;
     let opened = OpenedCheck::new(&others.model, others.notion, Keep::Needed)?;
     let checked = opened.check()?;
     let of_check = Outcome::of_model(checked.verdict.conformant, &opened.model);
@@ -113,13 +108,14 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     })
 }
 
-/// Returns a command as a user types it, which is shown on the screen.
-fn typed(name: &str, words: &[&str], json: bool) -> Result<Command> {
-    let words = [&["reachtube", name], words].concat();
+/// Reads the arguments of a command as a user types it, which is shown on the screen.
+fn typed<T: Args + FromArgMatches>(name: &'static str, words: &[&str], json: bool) -> Result<T> {
     if !json {
-        output::print(&format!("$ {}\n", words.join(" ")))?;
+        output::print(&format!("$ reachtube {name} {}\n", words.join(" ")))?;
     }
-    Ok(Cli::parse_from(words).command)
+    let command = T::augment_args(clap::Command::new(name));
+    let found = command.get_matches_from([&[name], words].concat());
+    Ok(T::from_arg_matches(&found).expect("clap has read the same arguments"))
 }
 
 /// The result of `demo`.

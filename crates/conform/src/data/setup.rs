@@ -35,7 +35,7 @@ pub struct Setup {
     pub(crate) settings: Settings,
     /// The nominal initial states of suites by their name, N each, where they are known. Any other
     /// suite starts at the mean of the recordings at hand.
-    pub(crate) nominal_starts: BTreeMap<String, Vec<f64>>,
+    pub nominal_starts: BTreeMap<String, Vec<f64>>,
     /// The condition that the drive is taken in, whatever a run's condition is; `None` if each run
     /// has its own.
     pub(crate) condition: Option<Condition>,
@@ -341,12 +341,6 @@ impl Setup {
     pub fn with_method(mut self, method: Method) -> Self {
         self.settings.method = method;
         self
-    }
-
-    /// Returns the same setup with nominal initial states of suites by their names, N each.
-    #[must_use]
-    pub fn starting_at(self, nominal_starts: BTreeMap<String, Vec<f64>>) -> Self {
-        Self { nominal_starts, ..self }
     }
 
     /// Returns what a fit may move.

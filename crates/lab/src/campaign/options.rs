@@ -44,7 +44,7 @@ pub struct CampaignOptions {
     pub excitation: usize,
     /// Number of exciting motions to validate with.
     pub validation: usize,
-    /// Of the samples of exciting motions, each of this number is logged.
+    /// Number of samples of an exciting motion from one that is logged to the next.
     pub stride: usize,
     /// The virtual robot.
     pub robot: VirtualRobotParameters,
