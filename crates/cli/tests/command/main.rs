@@ -34,6 +34,7 @@ mod robots;
 mod schema;
 mod schunk;
 mod short;
+mod stability;
 mod stop;
 mod terminal;
 mod verdicts;
