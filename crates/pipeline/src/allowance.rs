@@ -1,11 +1,11 @@
 //! An allowance of the sets for motions that were not recorded.
 //!
 //! The smallest sets enclose what was recorded and nothing more. Each motion is left out in turn,
-//! and the sets of the others say how far it leaves them. If that is twice what is accepted of
+//! and the sets of the others say how far it leaves them. If that is half again what is accepted of
 //! motions that are held out, or more, radii are added to the sets, before the held-out motions are
 //! looked at: the least factor of the input's error that covers all motions that were left out, and
 //! that one more motion needs with a probability of 5 % at most, if motions need factors of one
-//! normal distribution. Between once and twice what is accepted, a part of these radii is added
+//! normal distribution. From what is accepted to half again that, a part of these radii is added
 //! that grows from none to all, so that a sample more or less cannot make the sets jump.
 
 use reachtube_conform::Answer;
@@ -143,7 +143,7 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     );
     if share < 1.0 {
         reason += &format!(
-            ", of which {:.0} % are added, since it is less than twice what is accepted",
+            ", of which {:.0} % are added, since it is less than half again what is accepted",
             100.0 * share
         );
     }
@@ -151,11 +151,11 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
 }
 
 /// Returns the share of an allowance that is added: none while each value is at most its limit, all
-/// once one is as far beyond its limit as the limit is above the least value. The entries are
+/// once one is half as far beyond its limit as the limit is above the least value. The entries are
 /// \[value, least value, limit\].
 fn share(values: [[f64; 3]; 2]) -> f64 {
     let beyond = |[value, least, limit]: [f64; 3]| match value > limit {
-        true => ((value - limit) / (limit - least)).min(1.0),
+        true => (2.0 * (value - limit) / (limit - least)).min(1.0),
         false => 0.0,
     };
     values.map(beyond).into_iter().fold(0.0, f64::max)
@@ -219,10 +219,10 @@ mod tests {
     fn an_allowance_grows_from_none_to_all_beyond_what_is_accepted() {
         let of = |part: f64, growth: f64| share([[part, 0.0, 0.01], [growth, 1.0, 2.0]]);
         assert_eq!(
-            [of(0.0, 1.0), of(0.01, 2.0), of(0.02, 1.0), of(0.9, 1.0)],
+            [of(0.0, 1.0), of(0.01, 2.0), of(0.015, 1.0), of(0.9, 1.0)],
             [0.0, 0.0, 1.0, 1.0]
         );
-        assert!((of(0.0125, 2.0) - 0.25).abs() < 1e-12 && (of(0.0125, 2.5) - 0.5).abs() < 1e-12);
+        assert!((of(0.0125, 2.0) - 0.5).abs() < 1e-12 && (of(0.0125, 2.4) - 0.8).abs() < 1e-12);
         assert_eq!(of(0.0, f64::INFINITY), 1.0);
         // A limit at the least value leaves no room for less than all.
         let strict =

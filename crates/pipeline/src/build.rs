@@ -267,17 +267,15 @@ fn sets(
             (longest, reason)
         }
     };
-    if trial.fit.is_some() {
-        let (ratios, reason) = (ratios(&found.answer), None);
-        let own = HorizonWidths { horizon, ratios, reason, with_fit: true };
-        let all: Vec<HorizonWidths> = std::iter::once(own).chain(wide).collect();
-        horizons.retain(|tried| {
-            let is_known = all.iter().any(|known| known.horizon == tried.horizon);
-            !is_known && (tried.with_fit || tried.horizon < horizon)
-        });
-        horizons.extend(all);
-        horizons.sort_by(|a, b| a.horizon.total_cmp(&b.horizon));
-    }
+    let (ratios, with_fit) = (ratios(&found.answer), trial.fit.is_some());
+    let own = HorizonWidths { horizon, ratios, reason: None, with_fit };
+    let all: Vec<HorizonWidths> = std::iter::once(own).chain(wide).collect();
+    horizons.retain(|tried| {
+        let is_known = all.iter().any(|known| known.horizon == tried.horizon);
+        !is_known && (tried.with_fit == with_fit || tried.horizon < horizon)
+    });
+    horizons.extend(all);
+    horizons.sort_by(|a, b| a.horizon.total_cmp(&b.horizon));
     chooser.choose("horizon", format!("{horizon} s"), reason);
     chooser.choices.horizon = Some(horizon);
     chooser.choose("allowance", found.words(), &found.reason);
@@ -311,7 +309,7 @@ fn choose_equations(
 ) -> Result<Vec<HorizonWidths>> {
     let given = chooser.choices.equations;
     let grown = |equations: Equations| {
-        let trial = Trial { equations, ..trial.of_horizons(chooser.choices.horizon) };
+        let trial = Trial { equations, ..trial.clone() };
         let horizons = try_horizons(&trial, recordings)?;
         let widths = longest(&horizons, largest).clone();
         Ok::<_, Error>((horizons, widths))
