@@ -89,9 +89,8 @@ pub(crate) fn longer_horizons(recordings: &Prepared, than: f64) -> Vec<f64> {
 
 /// Finds how the sets grow over horizons longer than `than` \[s\], up to the one at which the
 /// worst joint's set is wider than its motion by the factor `most`. Recordings that count from
-/// their start are tried over all longer horizons. The sets have no allowance: motions leave the
-/// sets of few windows more often than those of all, so that the allowance of few windows would
-/// refuse what that of all does not.
+/// their start are tried over all longer horizons. The sets have no allowance: few
+/// windows ask for a larger one than all of them.
 ///
 /// # Errors
 ///

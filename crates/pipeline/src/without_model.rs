@@ -43,9 +43,9 @@ pub struct WithoutModel {
     /// Part of the rows of the faster half of the motions that lie outside the sets of the slower
     /// half, its allowance included: of the model, and without one. `None` for a single motion.
     pub faster: Option<[f64; 2]>,
-    /// The widest set at the horizon, as above, where nominal motions start from what the samples up
-    /// to the start tell, and no filter has seen later ones: of the model, and without one. `None`
-    /// for recordings that count from their start.
+    /// The widest set at the horizon, as above, where nominal motions start from what the samples
+    /// up to the start tell, and no filter has seen later ones: of the model, and without one.
+    /// `None` for recordings that count from their start.
     pub from_past: Option<[Option<f64>; 2]>,
     /// The part of the rows that may lie outside.
     #[serde(skip)]
@@ -173,8 +173,8 @@ fn kinematic<'a>(trial: &Trial<'a>, equations: Equations) -> Trial<'a> {
 }
 
 /// Returns which part of the rows of the faster half of the motions lies outside the sets of the
-/// slower half, with the allowance that this half asks for, for each of some trials. A motion is as fast as its largest acceleration beside the
-/// root mean square of all.
+/// slower half, with the allowance that this half asks for, for each of some trials. A motion is as
+/// fast as its largest acceleration beside the root mean square of all.
 fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result<Option<[f64; 2]>> {
     let [slower, faster] = by_speed(recordings);
     if slower.is_empty() || recordings.from_start {
@@ -199,8 +199,8 @@ fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result
     Ok(Some([own?, without?]))
 }
 
-/// Returns the widest sets of some trials where nominal motions start from what the samples up to the
-/// start tell.
+/// Returns the widest sets of some trials where nominal motions start from what the samples up to
+/// the start tell.
 fn from_past(
     trials: [&Trial; 2],
     recordings: &Prepared,

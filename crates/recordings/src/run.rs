@@ -14,7 +14,7 @@ pub struct Run {
     pub torques: Vec<f64>,
     /// Recorded temperatures of the joints, °C, row-major K x n; empty if none were recorded.
     pub temperatures: Vec<f64>,
-    /// Positions, velocities and accelerations at the first sample, as far as it and earlier samples
+    /// Positions, velocities and accelerations at the first sample, as far as it and earlier ones
     /// alone tell, 3n, rad, rad/s and rad/s²; empty if that is unknown.
     pub before: Vec<f64>,
     /// SHA-256 of the file, or of the numbers of a run in memory, in lower-case hexadecimal.

@@ -38,8 +38,8 @@ have them.";
 /// Record logs of a simulated arm, make a model of them, and check it on other logs
 ///
 /// The commands `model` and `check` are shown as one types them. The folder receives the logs, the
-/// model, its page, limits.toml with a choice for `model`, and cell.toml and brakes.toml for `verify`
-/// and `stop`. The last three are kept where they exist.
+/// model, its page, limits.toml with a choice for `model`, and cell.toml and brakes.toml for
+/// `verify` and `stop`. The last three are kept where they exist.
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {

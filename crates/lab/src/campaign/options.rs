@@ -74,16 +74,16 @@ impl Default for CampaignOptions {
 }
 
 impl CampaignOptions {
-    /// Returns the sizes of the demo: the logs of 8 exciting motions for a model and of 4 to compare
-    /// it with, 125 samples per second, and no other recordings.
+    /// Returns the sizes of the demo: the logs of 8 exciting motions for a model and of 4 to
+    /// compare it with, 125 samples per second, and no other recordings.
     #[must_use]
     pub fn demo() -> Self {
         let logs = Self { motions: 0, ..Self::default() }.suites_only();
         Self { excitation: 8, validation: 4, stride: 2, ..logs }
     }
 
-    /// Returns the sizes of a small experiment: 14 motions of 3 s, of which 7 calibrate the sets and
-    /// 2 are held out, with 2 suites of 5 runs per motion, and no other recordings.
+    /// Returns the sizes of a small experiment: 14 motions of 3 s, of which 7 calibrate the sets
+    /// and 2 are held out, with 2 suites of 5 runs per motion, and no other recordings.
     #[must_use]
     pub fn small() -> Self {
         let few = Self { motions: 14, start_points: 2, runs: 5, ..Self::default() };
