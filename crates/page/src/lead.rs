@@ -133,10 +133,10 @@ fn over_horizons(built: &Built) -> Option<(Chart, String)> {
         "How wide the sets are beside the motion, by horizon: {name} (blue), whose set is the \
          widest at {horizon} s (vertical line), and the other joints (grey). Up to the red line, \
          {:.0} %, sets are useful. At {horizon} s the sets are for all windows. At other horizons \
-         they may be for at most 200 windows, without an allowance, and the sets for all windows \
-         may be wider.{reason}{without_fit} The ratio may be compared across horizons; the cost \
-         may not: it adds rad to rad/s and grows with the length of the motions, so it is \
-         compared only within one data set.",
+         they may be for at most 200 windows, and the sets for all windows may be \
+         wider.{reason}{without_fit} The ratio may be compared across horizons; the cost may not: \
+         it adds rad to rad/s and grows with the length of the motions, so it is compared only \
+         within one data set.",
         100.0 * most
     );
     let title = format!("Half the set of {name} by its motion");

@@ -32,7 +32,7 @@ pub struct ModelOutput<'a> {
     /// The sets without a model, beside which the model's are judged.
     #[serde(skip_serializing_if = "Option::is_none")]
     without_model: Option<&'a WithoutModel>,
-    /// The horizons that were tried. Sets of all windows have their allowance, others none.
+    /// The horizons that were tried, with sets that have their allowance.
     horizons: &'a [HorizonWidths],
     /// The choices, each with its reason.
     choices: &'a [Choice],

@@ -30,6 +30,12 @@ impl Foretold {
         self.factor * self.half_widths[joint]
     }
 
+    /// Returns half the width of each joint's set by the joint's displacement, without the factor.
+    pub(crate) fn smallest(&self) -> Vec<f64> {
+        let pairs = self.half_widths.iter().zip(&self.displacements);
+        pairs.map(|(half_width, displacement)| half_width / displacement).collect()
+    }
+
     /// Returns half the width of the widest set by the joint's displacement.
     pub(crate) fn widest(&self) -> f64 {
         self.ratio(self.widest_joint())

@@ -27,6 +27,10 @@ pub struct HorizonWidths {
     /// found.
     #[schemars(with = "Vec<Option<f64>>")]
     pub ratios: Vec<f64>,
+    /// The same without the allowance, n. The choices are made by these: few windows ask for a
+    /// larger allowance than all of them, by which the chosen one is judged.
+    #[serde(skip)]
+    pub(crate) smallest: Vec<f64>,
     /// Why no sets were found.
     pub reason: Option<String>,
     /// Whether a fit was tried.
@@ -38,27 +42,46 @@ impl HorizonWidths {
     /// no sets were found.
     #[must_use]
     pub(crate) fn worst(&self) -> (usize, f64) {
-        let ratios = self.ratios.iter().copied().enumerate();
-        ratios.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
+        worst_of(&self.ratios)
     }
 
-    /// Returns the widths that a step finds, if its job is not cancelled.
+    /// Makes the widths of the sets of all windows, by which the horizon is judged.
+    pub(crate) fn of_all(horizon: f64, ratios: Vec<f64>, with_fit: bool) -> Self {
+        Self { horizon, smallest: ratios.clone(), ratios, reason: None, with_fit }
+    }
+
+    /// Does what [`worst`](Self::worst) does without the allowance.
+    #[must_use]
+    pub(crate) fn least(&self) -> (usize, f64) {
+        worst_of(&self.smallest)
+    }
+
+    /// Returns the widths that a step finds, with and without the allowance, if its job is not
+    /// cancelled.
     fn of_step(
         trial: &Trial,
         name: &str,
         horizon: f64,
-        find: impl FnOnce() -> Result<Vec<f64>>,
+        find: impl FnOnce() -> Result<[Vec<f64>; 2]>,
     ) -> Result<Self> {
         // JSON has no infinite ratio, as where a set was lost.
         let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
-        let (ratios, reason) = trial.journal.step(name, || match find() {
-            Ok(ratios) => Ok((ratios.into_iter().map(finite).collect(), None)),
+        let all = |ratios: Vec<f64>| ratios.into_iter().map(finite).collect::<Vec<_>>();
+        let (found, reason) = trial.journal.step(name, || match find() {
+            Ok(found) => Ok((found.map(all), None)),
             Err(error) if trial.progress.is_cancelled() => Err(error),
-            Err(error) => Ok((Vec::new(), Some(error.to_string()))),
+            Err(error) => Ok(([vec![], vec![]], Some(error.to_string()))),
         })?;
-        let ratios = ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect();
-        Ok(Self { horizon, ratios, reason, with_fit: trial.fit.is_some() })
+        let [ratios, smallest] = found.map(|ratios: Vec<Option<f64>>| {
+            ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect()
+        });
+        Ok(Self { horizon, ratios, smallest, reason, with_fit: trial.fit.is_some() })
     }
+}
+
+fn worst_of(ratios: &[f64]) -> (usize, f64) {
+    let ratios = ratios.iter().copied().enumerate();
+    ratios.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, f64::INFINITY))
 }
 
 /// Finds how the sets grow with the horizon, up to the one at which they are useless.
@@ -89,8 +112,7 @@ pub(crate) fn longer_horizons(recordings: &Prepared, than: f64) -> Vec<f64> {
 
 /// Finds how the sets grow over horizons longer than `than` \[s\], up to the one at which the
 /// worst joint's set is wider than its motion by the factor `most`. Recordings that count from
-/// their start are tried over all longer horizons. The sets have no allowance: few
-/// windows ask for a larger one than all of them.
+/// their start are tried over all longer horizons.
 ///
 /// # Errors
 ///
@@ -101,14 +123,13 @@ pub(crate) fn try_longer(
     than: f64,
     most: f64,
 ) -> Result<Vec<HorizonWidths>> {
-    let trial = Trial { allowance: Some(Vec::new()), ..trial.clone() };
     let mut tried: Vec<HorizonWidths> = Vec::new();
     for horizon in longer_horizons(recordings, than) {
-        match try_horizon(&trial, recordings, horizon, MOST_WINDOWS)? {
+        match try_horizon(trial, recordings, horizon, MOST_WINDOWS)? {
             Some(widths) => tried.push(widths),
             None => break,
         }
-        let is_too_wide = tried.last().is_some_and(|widths| widths.worst().1 > most);
+        let is_too_wide = tried.last().is_some_and(|widths| widths.least().1 > most);
         // A recording that counts from its start moves most in its middle.
         if is_too_wide && !recordings.from_start {
             break;
@@ -130,7 +151,7 @@ pub(crate) fn try_horizon(
         other => other?,
     };
     let name = format!("{horizon} s, {most} windows, {}", trial.name());
-    let widths = |found: Widened| Ok(ratios(&found.answer));
+    let widths = |found: Widened| Ok([ratios(&found.answer), found.foretold.smallest()]);
     let found = || Widened::of_some(trial, recordings, horizon, most).and_then(widths);
     HorizonWidths::of_step(trial, &name, horizon, found).map(Some)
 }
@@ -164,7 +185,8 @@ pub(crate) fn longest_of_all(
         let name = format!("{horizon} s, all windows, {}", trial.name());
         let widths = HorizonWidths::of_step(trial, &name, horizon, || {
             let widened = Widened::new(trial, recordings, horizon)?;
-            Ok(ratios(&found.insert(widened).answer))
+            let ratios = ratios(&found.insert(widened).answer);
+            Ok([ratios.clone(), ratios])
         })?;
         if widths.worst().1 > largest {
             wide.push(widths);
@@ -175,7 +197,7 @@ pub(crate) fn longest_of_all(
     }
     let found = Widened::new(trial, recordings, *last)?;
     let (ratios, with_fit) = (ratios(&found.answer), trial.fit.is_some());
-    wide.push(HorizonWidths { horizon: *last, ratios, reason: None, with_fit });
+    wide.push(HorizonWidths::of_all(*last, ratios, with_fit));
     let HorizonWidths { horizon, .. } = wide.remove(narrowest(&wide));
     let found = if horizon == *last { found } else { Widened::new(trial, recordings, horizon)? };
     Ok(Longest { found, horizon, wide })
@@ -196,15 +218,15 @@ pub(crate) fn ratios(answer: &Answer) -> Vec<f64> {
 pub(crate) fn candidates(tried: &[HorizonWidths], largest: f64) -> Vec<f64> {
     let longest = longest(tried, largest).horizon;
     let shorter = tried.iter().rev().filter(|widths| widths.horizon < longest);
-    let narrow = shorter.take_while(|widths| widths.worst().1 <= largest);
+    let narrow = shorter.take_while(|widths| widths.least().1 <= largest);
     std::iter::once(longest).chain(narrow.map(|widths| widths.horizon)).collect()
 }
 
 /// Returns the longest horizon at which no set is wider beside the motion than `largest`; if there
 /// is none, the horizon at which the worst set is narrowest.
 pub(crate) fn longest(tried: &[HorizonWidths], largest: f64) -> &HorizonWidths {
-    let fitting = tried.iter().rev().find(|widths| widths.worst().1 <= largest);
-    let narrowest = || tried.iter().min_by(|a, b| a.worst().1.total_cmp(&b.worst().1));
+    let fitting = tried.iter().rev().find(|widths| widths.least().1 <= largest);
+    let narrowest = || tried.iter().min_by(|a, b| a.least().1.total_cmp(&b.least().1));
     fitting.or_else(narrowest).expect("a horizon was tried")
 }
 
@@ -214,19 +236,18 @@ mod tests {
 
     #[test]
     fn the_longest_horizon_whose_sets_are_narrow_is_chosen() {
-        let widths = |horizon: f64, ratio: f64| HorizonWidths {
-            horizon,
-            ratios: vec![0.1, ratio],
-            reason: None,
-            with_fit: false,
-        };
+        let widths =
+            |horizon: f64, ratio: f64| HorizonWidths::of_all(horizon, vec![0.1, ratio], false);
         let tried = [widths(0.05, 0.2), widths(0.1, 0.4), widths(0.2, 0.6), widths(0.3, 0.7)];
         assert_eq!(longest(&tried, 0.5).horizon, 0.1);
         assert_eq!(longest(&tried, 0.1).horizon, 0.05);
         assert_eq!(longest(&[widths(0.05, 3.0), widths(0.1, 2.0)], 0.5).horizon, 0.1);
         assert_eq!(narrowest(&[widths(0.2, 0.6), widths(0.1, 0.55), widths(0.05, 0.7)]), 1);
         assert_eq!(narrowest(&[widths(0.2, 0.6), widths(0.1, 0.6)]), 1);
-        let lost = HorizonWidths { ratios: vec![], ..widths(1.0, 0.0) };
-        assert_eq!(lost.worst().1, f64::INFINITY);
+        // An allowance of few windows decides nothing.
+        let wider = HorizonWidths { ratios: vec![0.1, 0.9], ..widths(0.2, 0.4) };
+        assert_eq!(longest(&[widths(0.1, 0.4), wider], 0.5).horizon, 0.2);
+        let lost = HorizonWidths::of_all(1.0, vec![], false);
+        assert_eq!([lost.worst().1, lost.least().1], [f64::INFINITY; 2]);
     }
 }

@@ -151,9 +151,7 @@ impl Built {
         let all = shown.map(|widths| {
             let (_, ratio) = widths.worst();
             let fit = if widths.with_fit { " with fit" } else { "" };
-            let is_wider = widths.horizon == horizon && !self.answer.model.allowance.is_empty();
-            let allowance = if is_wider { " with its allowance" } else { "" };
-            format!("{} s {}{fit}{allowance}", widths.horizon, percent(ratio))
+            format!("{} s {}{fit}", widths.horizon, percent(ratio))
         });
         let mut all: Vec<String> = all.collect();
         all.extend((all.len() < self.horizons.len()).then(|| "..".into()));
