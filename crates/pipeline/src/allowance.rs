@@ -219,7 +219,7 @@ mod tests {
     fn an_allowance_grows_from_none_to_all_beyond_what_is_accepted() {
         let of = |part: f64, growth: f64| share([[part, 0.0, 0.01], [growth, 1.0, 2.0]]);
         assert_eq!(
-            [of(0.0, 1.0), of(0.01, 2.0), of(0.015, 1.0), of(0.9, 1.0)],
+            [of(0.0, 1.0), of(0.01, 2.0), of(0.016, 1.0), of(0.9, 1.0)],
             [0.0, 0.0, 1.0, 1.0]
         );
         assert!((of(0.0125, 2.0) - 0.5).abs() < 1e-12 && (of(0.0125, 2.4) - 0.8).abs() < 1e-12);
