@@ -309,7 +309,7 @@ fn choose_equations(
 ) -> Result<Vec<HorizonWidths>> {
     let given = chooser.choices.equations;
     let grown = |equations: Equations| {
-        let trial = Trial { equations, ..trial.clone() };
+        let trial = Trial { equations, ..trial.of_horizons(chooser.choices.horizon) };
         let horizons = try_horizons(&trial, recordings)?;
         let widths = longest(&horizons, largest).clone();
         Ok::<_, Error>((horizons, widths))

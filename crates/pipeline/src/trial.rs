@@ -87,6 +87,13 @@ impl Trial<'_> {
         TrialProgress { job: self.progress, is_fit: self.fit.is_some(), without }
     }
 
+    /// Returns the trial of several horizons. With the horizon, an allowance is given for that one
+    /// alone, and the others have what they ask for.
+    pub(crate) fn of_horizons(&self, given: Option<f64>) -> Self {
+        let allowance = self.allowance.clone().filter(|_| given.is_none());
+        Self { allowance, ..self.clone() }
+    }
+
     /// Finds the sets for windows.
     ///
     /// # Errors
