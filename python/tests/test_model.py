@@ -111,7 +111,7 @@ def test_arrays_become_a_useful_model(built: rt.BuiltModel, arm: rt.Robot) -> No
     # One motion of four is held out.
     chosen = {choice.key: choice for choice in built.choices}
     assert chosen["held-out"].value == "wave 3" and "every fourth" in chosen["held-out"].reason
-    assert [w.horizon for w in built.horizons][:2] == [0.2, 0.3]
+    assert [w.horizon for w in built.horizons][:2] == [0.1, 0.2]
     assert len(built.horizons[0].ratios) == arm.joints
     assert "conformant" in [finding.code for finding in built.findings]
     assert "conformant and useful up to 0.1 s" in str(built) and "conformant" in repr(built)
