@@ -106,7 +106,7 @@ impl Widened {
 
 /// Returns the allowance that motions ask for which were left out in turn, rounded up to three
 /// digits; empty if no more than a part of their rows leaves the sets of the others, and none needs
-/// more than a factor: the two limits `most`. Little beyond them, it is small.
+/// more than a factor: the two limits `most`. Where a limit is hardly exceeded, it is small.
 fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     if all.len() < 2 {
         return (Vec::new(), "there is a single motion or part".into(), None);
@@ -143,15 +143,15 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     );
     if share < 1.0 {
         reason += &format!(
-            ", of which {:.0} % are added, since it is less than half again what is accepted",
+            "; {:.0} % of that is added, as the limits are exceeded by less than half",
             100.0 * share
         );
     }
     (allowance, reason, None)
 }
 
-/// Returns the share of an allowance that is added: none while each value is at most its limit, all
-/// once one is half as far beyond its limit as the limit is above the least value. The entries are
+/// Returns the share of an allowance that is added: none while no value exceeds its limit, and all
+/// once one exceeds its limit by half or more, counted from the least value. The entries are
 /// \[value, least value, limit\].
 fn share(values: [[f64; 3]; 2]) -> f64 {
     let beyond = |[value, least, limit]: [f64; 3]| match value > limit {

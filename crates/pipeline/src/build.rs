@@ -319,14 +319,14 @@ fn choose_equations(
         None => {
             let (of_robot, own) = grown(Equations::Robot)?;
             let (of_model, other) = grown(Equations::Model)?;
-            let is_narrow = |widths: &HorizonWidths| widths.least().1 <= largest;
+            let is_narrow = |widths: &HorizonWidths| widths.worst_smallest().1 <= largest;
             let is_better = match (is_narrow(&own), is_narrow(&other)) {
                 (true, true) => other.horizon > own.horizon,
-                (false, false) => other.least().1 < own.least().1,
+                (false, false) => other.worst_smallest().1 < own.worst_smallest().1,
                 (own, _) => !own,
             };
             let words = |widths: &HorizonWidths| {
-                format!("{} at {} s", percent(widths.least().1), widths.horizon)
+                format!("{} at {} s", percent(widths.worst_smallest().1), widths.horizon)
             };
             let reason = format!(
                 "the widest set is {} of the motion with the robot's equations, {} with the linear \
@@ -374,7 +374,7 @@ fn reason_of_horizon(chosen: &Longest, tried: &[HorizonWidths], largest: f64) ->
     } else if let Some((windows, HorizonWidths { horizon, reason: Some(reason), .. })) = longer {
         words += &format!("; at {horizon} s {windows} windows give no sets: {reason}");
     } else if let Some((windows, longer)) = longer {
-        let (joint, ratio) = longer.least();
+        let (joint, ratio) = longer.worst_smallest();
         words += &format!(
             "; at {} s {windows} windows give {} ({})",
             longer.horizon,

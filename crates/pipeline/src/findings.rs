@@ -39,10 +39,7 @@ pub(crate) fn impossible_links(
     }
     let text = format!("no body has the mass and inertia of the links that {links} move");
     if !is_identified {
-        return (
-            Some(format!("{text}; they are used, since together they explain the torques")),
-            None,
-        );
+        return (Some(format!("{text}; they are used as they are described")), None);
     }
     let text = format!("{text}: only the geometry of the description is used");
     let severity = Severity::Warning;

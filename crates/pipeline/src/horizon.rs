@@ -27,8 +27,8 @@ pub struct HorizonWidths {
     /// found.
     #[schemars(with = "Vec<Option<f64>>")]
     pub ratios: Vec<f64>,
-    /// The same without the allowance, n. The choices are made by these: few windows ask for a
-    /// larger allowance than all of them, by which the chosen one is judged.
+    /// The same of the sets without their allowance, n. Choices are made by these, because few
+    /// windows ask for a larger allowance than all windows do.
     #[serde(skip)]
     pub(crate) smallest: Vec<f64>,
     /// Why no sets were found.
@@ -51,8 +51,7 @@ impl HorizonWidths {
     }
 
     /// Does what [`worst`](Self::worst) does without the allowance.
-    #[must_use]
-    pub(crate) fn least(&self) -> (usize, f64) {
+    pub(crate) fn worst_smallest(&self) -> (usize, f64) {
         worst_of(&self.smallest)
     }
 
@@ -129,7 +128,7 @@ pub(crate) fn try_longer(
             Some(widths) => tried.push(widths),
             None => break,
         }
-        let is_too_wide = tried.last().is_some_and(|widths| widths.least().1 > most);
+        let is_too_wide = tried.last().is_some_and(|widths| widths.worst_smallest().1 > most);
         // A recording that counts from its start moves most in its middle.
         if is_too_wide && !recordings.from_start {
             break;
@@ -218,15 +217,16 @@ pub(crate) fn ratios(answer: &Answer) -> Vec<f64> {
 pub(crate) fn candidates(tried: &[HorizonWidths], largest: f64) -> Vec<f64> {
     let longest = longest(tried, largest).horizon;
     let shorter = tried.iter().rev().filter(|widths| widths.horizon < longest);
-    let narrow = shorter.take_while(|widths| widths.least().1 <= largest);
+    let narrow = shorter.take_while(|widths| widths.worst_smallest().1 <= largest);
     std::iter::once(longest).chain(narrow.map(|widths| widths.horizon)).collect()
 }
 
 /// Returns the longest horizon at which no set is wider beside the motion than `largest`; if there
 /// is none, the horizon at which the worst set is narrowest.
 pub(crate) fn longest(tried: &[HorizonWidths], largest: f64) -> &HorizonWidths {
-    let fitting = tried.iter().rev().find(|widths| widths.least().1 <= largest);
-    let narrowest = || tried.iter().min_by(|a, b| a.least().1.total_cmp(&b.least().1));
+    let fitting = tried.iter().rev().find(|widths| widths.worst_smallest().1 <= largest);
+    let narrowest =
+        || tried.iter().min_by(|a, b| a.worst_smallest().1.total_cmp(&b.worst_smallest().1));
     fitting.or_else(narrowest).expect("a horizon was tried")
 }
 
@@ -248,6 +248,6 @@ mod tests {
         let wider = HorizonWidths { ratios: vec![0.1, 0.9], ..widths(0.2, 0.4) };
         assert_eq!(longest(&[widths(0.1, 0.4), wider], 0.5).horizon, 0.2);
         let lost = HorizonWidths::of_all(1.0, vec![], false);
-        assert_eq!([lost.worst().1, lost.least().1], [f64::INFINITY; 2]);
+        assert_eq!([lost.worst().1, lost.worst_smallest().1], [f64::INFINITY; 2]);
     }
 }

@@ -43,9 +43,9 @@ pub struct WithoutModel {
     /// Part of the rows of the faster half of the motions that lie outside the sets of the slower
     /// half, its allowance included: of the model, and without one. `None` for a single motion.
     pub faster: Option<[f64; 2]>,
-    /// The widest set at the horizon, as above, where nominal motions start from what the samples
-    /// up to the start tell, and no filter has seen later ones: of the model, and without one.
-    /// `None` for recordings that count from their start.
+    /// The widest set, as above, where nominal motions start from what the samples up to the start
+    /// tell, which no filter of later ones has changed: of the model, and without one. `None` for
+    /// recordings that count from their start, and if the model is not worth having.
     pub from_past: Option<[Option<f64>; 2]>,
     /// The part of the rows that may lie outside.
     #[serde(skip)]
@@ -79,16 +79,20 @@ impl WithoutModel {
         let windows = answer.model.data.run_count();
         let narrower = |joint| without.half_width(joint) / own.half_width(joint);
         let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
-        Ok(Self {
+        let mut compared = Self {
             equations,
             widest: finite(without.widest()),
             widest_of: [without.widest_joint(), windows],
             widest_of_model: finite(own.widest()),
             narrower: (0..own.half_widths.len()).map(narrower).collect(),
             faster: to_faster([trial, &other], recordings, horizon)?,
-            from_past: from_past([trial, &other], recordings, horizon)?,
+            from_past: None,
             largest_outside: trial.largest_outside,
-        })
+        };
+        if compared.is_model_better() {
+            compared.from_past = from_past([trial, &other], recordings, horizon)?;
+        }
+        Ok(compared)
     }
 
     /// Returns whether the model is worth having: its sets are narrower than without one, and of

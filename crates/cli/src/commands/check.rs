@@ -34,10 +34,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    let opened = OpenedCheck::new(&args.model, args.notion, Keep::Needed)?;
-    let check = opened.check()?;
-    output::notes(&check.notes);
-    let outcome = Outcome::of_model(check.verdict.conformant, &opened.model);
+    let (opened, check, outcome) = compared(args)?;
     match json {
         true => {
             warn_of_model(&opened);
@@ -46,6 +43,15 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         false => print(&opened, &check, &outcome)?,
     }
     Ok(outcome)
+}
+
+/// Compares recordings with a model, and prints the notes about them.
+pub(crate) fn compared(args: &Arguments) -> Result<(OpenedCheck, Check, Outcome)> {
+    let opened = OpenedCheck::new(&args.model, args.notion, Keep::Needed)?;
+    let check = opened.check()?;
+    output::notes(&check.notes);
+    let outcome = Outcome::of_model(check.verdict.conformant, &opened.model);
+    Ok((opened, check, outcome))
 }
 
 /// Prints a check on a few lines, or as a whole if the user asks for it.

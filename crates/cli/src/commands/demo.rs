@@ -1,10 +1,11 @@
 //! `reachtube demo`: the two main commands on the logs of a simulated arm.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, FromArgMatches};
 use reachtube::campaign::{CampaignOptions, record};
-use reachtube::conform::{Check, Keep};
+use reachtube::conform::Check;
 use reachtube::pipeline::ModelOutput;
 use reachtube::write;
 use reachtube_robot::Robot;
@@ -13,7 +14,6 @@ use serde::Serialize;
 
 use super::{check, model};
 use crate::error::Result;
-use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
@@ -32,8 +32,8 @@ Example:
   reachtube demo --out demo
       then open demo/page/report.html in a browser
 
-Exit codes: 0 conformant and useful, and later logs stay in the sets; others as `model` and `check`
-have them.";
+Exit codes: 0 the model is conformant and useful, and the other logs lie in its sets; otherwise the
+exit code of `model`, or where that is 0, of `check`.";
 
 /// Record logs of a simulated arm, make a model of them, and check it on other logs
 ///
@@ -94,9 +94,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let [file, others] = [&model_file, &folder.join("validation")].map(|path| shown(path));
     let words = ["--model", &file, "--data", &others];
     let others: check::Arguments = typed("check", &words, json)?;
-    let opened = OpenedCheck::new(&others.model, others.notion, Keep::Needed)?;
-    let checked = opened.check()?;
-    let of_check = Outcome::of_model(checked.verdict.conformant, &opened.model);
+    let (opened, checked, of_check) = check::compared(&others)?;
     if json {
         output::print_json(&DemoOutput { model: made.built.output(), check: &checked })?;
     } else {
@@ -111,11 +109,21 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 /// Reads the arguments of a command as a user types it, which is shown on the screen.
 fn typed<T: Args + FromArgMatches>(name: &'static str, words: &[&str], json: bool) -> Result<T> {
     if !json {
+        let words: Vec<_> = words.iter().map(|word| quoted(word)).collect();
         output::print(&format!("$ reachtube {name} {}\n", words.join(" ")))?;
     }
     let command = T::augment_args(clap::Command::new(name));
     let found = command.get_matches_from([&[name], words].concat());
     Ok(T::from_arg_matches(&found).expect("clap has read the same arguments"))
+}
+
+/// Returns a word as a shell takes it for one.
+fn quoted(word: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./,=".contains(c);
+    match word.chars().all(is_plain) {
+        true => word.into(),
+        false => format!("'{}'", word.replace('\'', r"'\''")).into(),
+    }
 }
 
 /// The result of `demo`.
@@ -125,4 +133,16 @@ pub(crate) struct DemoOutput<'a> {
     model: ModelOutput<'a>,
     /// The check on logs that no choice has seen.
     check: &'a Check,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_with_spaces_are_quoted() {
+        assert_eq!(quoted("demo/limits.toml"), "demo/limits.toml");
+        assert_eq!(quoted("my demo"), "'my demo'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+    }
 }

@@ -96,7 +96,48 @@ pub(crate) struct Made {
 impl Made {
     /// Makes a model and writes its files.
     pub(crate) fn new(args: &Arguments) -> Result<Self> {
-        let (built, written) = make(args)?;
+        let choices = choices(args)?;
+        let name = choices.robot.clone().ok_or_else(|| Error::setting(NO_ROBOT))?;
+        let lock: Vec<Lock> =
+            choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
+        let (robot, impossible) = Robot::load_to_identify(&name, &lock)?;
+        let torque = choices.torque.ok_or_else(|| Error::setting(NO_TORQUE))?;
+        if choices.data.is_empty() {
+            return Err(Error::setting(
+                "no recordings are given; name some with --data, or with data = [..] in the \
+                 settings file",
+            ));
+        }
+        let files = ["model.json", "robot.toml", "choices.toml"].map(|file| args.out.join(file));
+        output::claim_all(&files)?;
+        let pages = ["page", "held-out"].map(|folder| args.out.join(folder));
+        output::claim_all(&pages.map(|folder| report_files::page_in(&folder)))?;
+        let bar = Progress::of("making a model");
+        let mut say = |choice: &Choice| {
+            bar.note(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
+        };
+        let journal = args.out.join(JOURNAL);
+        let built = build(&robot, torque, &choices, Some(&journal), &mut say, &bar);
+        drop(bar);
+        let built = built.map_err(|error| {
+            // A model that was made says it among its findings.
+            impossible.iter().for_each(|warning| output::warn(warning));
+            forget(&journal);
+            in_settings(error, args)
+        })?;
+        let built = built.among_others(&args.out.join("model.json"));
+        output::notes(&built.notes);
+        let mut written = Vec::new();
+        for (name, text) in built.files() {
+            let path = args.out.join(name);
+            write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
+            written.push(path);
+        }
+        for (folder, page) in built_pages(&built)? {
+            let folder = args.out.join(folder);
+            written.push(report_files::write_page(&page, Assets::Inside, &folder)?);
+        }
+        forget(&journal);
         Ok(Self { built, written })
     }
 
@@ -116,52 +157,6 @@ impl Made {
         }
         output::print_verdict(&text, outcome)
     }
-}
-
-/// Makes a model and writes its files, whose paths are returned.
-fn make(args: &Arguments) -> Result<(Built, Vec<PathBuf>)> {
-    let choices = choices(args)?;
-    let name = choices.robot.clone().ok_or_else(|| Error::setting(NO_ROBOT))?;
-    let lock: Vec<Lock> = choices.lock.iter().map(|lock| lock.parse()).collect::<Result<_, _>>()?;
-    let (robot, impossible) = Robot::load_to_identify(&name, &lock)?;
-    let torque = choices.torque.ok_or_else(|| Error::setting(NO_TORQUE))?;
-    if choices.data.is_empty() {
-        return Err(Error::setting(
-            "no recordings are given; name some with --data, or with data = [..] in the settings \
-             file",
-        ));
-    }
-    let files = ["model.json", "robot.toml", "choices.toml"].map(|file| args.out.join(file));
-    output::claim_all(&files)?;
-    let pages = ["page", "held-out"].map(|folder| args.out.join(folder));
-    output::claim_all(&pages.map(|folder| report_files::page_in(&folder)))?;
-    let bar = Progress::of("making a model");
-    let mut say = |choice: &Choice| {
-        bar.note(&format!("{}: {} ({})", choice.key, choice.value, choice.reason));
-    };
-    let journal = args.out.join(JOURNAL);
-    let built = build(&robot, torque, &choices, Some(&journal), &mut say, &bar);
-    drop(bar);
-    let built = built.map_err(|error| {
-        // A model that was made says it among its findings.
-        impossible.iter().for_each(|warning| output::warn(warning));
-        forget(&journal);
-        in_settings(error, args)
-    })?;
-    let built = built.among_others(&args.out.join("model.json"));
-    output::notes(&built.notes);
-    let mut written = Vec::new();
-    for (name, text) in built.files() {
-        let path = args.out.join(name);
-        write::atomically(&path, |out| out.write_all(text.as_bytes()))?;
-        written.push(path);
-    }
-    for (folder, page) in built_pages(&built)? {
-        let folder = args.out.join(folder);
-        written.push(report_files::write_page(&page, Assets::Inside, &folder)?);
-    }
-    forget(&journal);
-    Ok((built, written))
 }
 
 /// Names the settings file in an error of a choice that it makes.

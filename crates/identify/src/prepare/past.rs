@@ -27,7 +27,8 @@ impl Past {
     }
 
     /// Returns position, velocity and acceleration at the last of some samples, whose positions and
-    /// velocities are given. Too few samples give no acceleration: it is 0.
+    /// velocities are given; without velocities, positions alone. Too few samples give no
+    /// acceleration: it is 0.
     pub(super) fn at_last(&self, q: &[f64], qd: &[f64]) -> [f64; 3] {
         let (count, step) = (self.weights.ncols(), self.step);
         let Some(first) = q.len().checked_sub(count) else {
