@@ -167,6 +167,28 @@ fn add_friction(
     }
 }
 
+/// Identifies a robot as [`identify`] does, digit for digit, without judging it: for robots that
+/// are compared with one that was judged, such as those without one of its recordings.
+///
+/// # Errors
+///
+/// As [`identify`].
+pub fn identify_unjudged(
+    robot: &Robot,
+    settings: &IdentifySettings,
+    folder: &Path,
+) -> Result<RobotDescription> {
+    settings.validate(robot.joint_count())?;
+    let (inputs, model) = (Inputs::read(robot, settings, folder)?, &settings.model);
+    let given = robot.description();
+    let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
+    let fitted = Fitted::new(robot, &inputs, model)?;
+    let Fitted { first, friction, inertia, mut description, .. } = fitted;
+    add_friction(&mut description, &inputs, &friction, &first.friction, &inertia);
+    keep_motors(&mut description, given, model);
+    Ok(description)
+}
+
 /// Returns warnings about the inertial parameters, and one for each joint whose viscous friction by
 /// least squares falls with speed: in the exciting motions, or else in the slow ones.
 fn inertia_warnings(

@@ -70,7 +70,7 @@ pub use fit::{Fit, JointFit};
 pub use friction::falling::FallingFriction;
 pub use friction::fit::{FrictionFit, JointFriction};
 pub use friction::form::CoulombForm;
-pub use identification::{Identification, identify};
+pub use identification::{Identification, identify, identify_unjudged};
 pub use inertia::{BaseParameter, InertiaFit, PhysicalFit, SaturatingFriction};
 pub use inputs::signals;
 pub use plausibility::{Gain, Implausible, PositionOffset};

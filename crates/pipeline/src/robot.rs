@@ -8,7 +8,9 @@ use reachtube_finding::{Finding, Severity};
 use reachtube_identify::prepare::{
     LogEntry, PrepareSettings, PreparedLog, RawLog, prepare, unfiltered,
 };
-use reachtube_identify::{IdentifySettings, Implausible, ModelSettings, identify};
+use reachtube_identify::{
+    IdentifySettings, Implausible, ModelSettings, identify, identify_unjudged,
+};
 use reachtube_recordings::Torque;
 use reachtube_robot::Robot;
 
@@ -191,8 +193,13 @@ impl Evidence<'_> {
 
     /// Identifies the robot from what is not held out.
     pub(crate) fn identified(&self, described: &Robot) -> Result<Nominal> {
-        let (robot, implausible_results) = self.identify(described, "identify")?;
-        let nominal = self.prepared(&robot)?;
+        let (settings, none) = (self.identify_settings(), Path::new(""));
+        let (description, implausible_results): (_, Vec<Implausible>) =
+            self.trial.journal.step("identify", || {
+                let found = identify(described, &settings, none, &|_, _| ())?;
+                Ok((found.description, found.implausible))
+            })?;
+        let nominal = self.prepared(&Robot::from_description(&description)?)?;
         let findings = implausible_results.iter().map(implausible).collect();
         let mut columns = implausible_results.iter().map(|result| result.columns);
         let is_swapped = columns.any(|fault| matches!(fault, Some(Hypothesis::Swap(..))));
@@ -212,16 +219,21 @@ impl Evidence<'_> {
         let (rest, one_joint) = (self.rest.clone(), self.one_joint.clone());
         let evidence = Evidence { motions: &others, rest, one_joint, ..*self };
         let name = format!("identify without {}", motions.join(", "));
-        self.prepared(&evidence.identify(described, &name)?.0)
+        self.prepared(&evidence.unjudged(described, &name)?)
     }
 
-    /// Identifies the robot, which is the step `name` of the job.
-    pub(crate) fn identify(
-        &self,
-        described: &Robot,
-        name: &str,
-    ) -> Result<(Robot, Vec<Implausible>)> {
-        let settings = IdentifySettings {
+    /// Identifies the robot without judging it, which is the step `name` of the job.
+    pub(crate) fn unjudged(&self, described: &Robot, name: &str) -> Result<Robot> {
+        let settings = self.identify_settings();
+        let description = self
+            .trial
+            .journal
+            .step(name, || Ok(identify_unjudged(described, &settings, Path::new(""))?))?;
+        Ok(Robot::from_description(&description)?)
+    }
+
+    fn identify_settings(&self) -> IdentifySettings {
+        IdentifySettings {
             rest: self.rest.clone(),
             one_joint: self.one_joint.clone(),
             excitation: self.motions.iter().map(Recording::entry).collect(),
@@ -233,12 +245,7 @@ impl Evidence<'_> {
                 ..ModelSettings::default()
             },
             ..IdentifySettings::default()
-        };
-        let (description, implausible_results) = self.trial.journal.step(name, || {
-            let found = identify(described, &settings, Path::new(""), &|_, _| ())?;
-            Ok((found.description, found.implausible))
-        })?;
-        Ok((Robot::from_description(&description)?, implausible_results))
+        }
     }
 
     pub(crate) fn prepared(&self, robot: &Robot) -> Result<Nominal> {

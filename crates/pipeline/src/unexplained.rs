@@ -80,7 +80,7 @@ impl Evidence<'_> {
             let evidence = Evidence { motions: &motions, rest, one_joint, ..*self };
             let robot = match chosen.is_identified {
                 true => {
-                    evidence.identify(described, &format!("identify without {lag} s of lag"))?.0
+                    evidence.unjudged(described, &format!("identify without {lag} s of lag"))?
                 }
                 false => chosen.robot.clone(),
             };
