@@ -45,6 +45,7 @@ def conform(
     weights: Literal["unit"] | npt.ArrayLike = "unit",
     noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
     sensor_noise: npt.ArrayLike | None = None,
+    input_doubling: npt.ArrayLike | None = None,
     nominal: Literal["mean", "own"] = "mean",
     equations: Literal["model", "robot", "velocity", "decaying", "held"] = "model",
     calibrate: Sequence[str] = (),
@@ -103,6 +104,9 @@ def conform(
     sensor_noise
         Radii of the sensors' noise, 2 or 2n numbers, rad and rad/s, which limit V; estimated from
         the recordings if they are not given.
+    input_doubling
+        Accelerations of the nominal motion, one per joint, rad/s², at which U is twice what it is
+        at rest; U is the same along every motion if they are not given.
     nominal
         Where nominal motions start: at the mean of a suite's first states, or at each run's own.
     equations

@@ -90,5 +90,7 @@ def of_conformance(robot: Robot | Abstraction, *, torque: Torque, **given: Any) 
             settings[name] = {key: _radii(name, given[name], robot.joints)}
     if given.get("sensor_noise") is not None:
         settings["sensor_noise"] = _radii("sensor_noise", given["sensor_noise"], robot.joints)
+    if given.get("input_doubling") is not None:
+        settings["input_doubling"] = finite("input_doubling", given["input_doubling"])
     settings.update(limits)
     return json_of("settings", settings)

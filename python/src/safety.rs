@@ -46,7 +46,8 @@ pub(crate) fn stop(
         let (text, origin) = as_toml(brakes, origin, "brakes")?;
         let brakes = Brakes::from_toml(&text, &origin, problem.robot())?;
         let (category, every, table) = question;
-        let category = Category::numbered(category, &brakes, &origin, &tube.sets.input_set)?;
+        let input_set = |rates: &[f64]| problem.input_set_at(&tube.sets, rates);
+        let category = Category::numbered(category, &brakes, &origin, &input_set)?;
         let recorded = recorded.as_ref().map(|source| source as &dyn RunSource);
         let question =
             StopQuestion { brakes: &brakes, category: &category, every, table, recorded };

@@ -51,6 +51,17 @@ def test_nominal_motions_may_follow_the_robot(robot: rt.Robot) -> None:
         rt.conform(robot, exact, torque="motor", order=3, equations="robot")
 
 
+def test_the_input_set_may_grow_with_the_nominal_motion(robot: rt.Robot) -> None:
+    exact, n = runs(robot, noise_of=0.0), robot.joints
+    model = rt.conform(robot, exact, torque="motor", input_doubling=np.full(n, 0.7))
+    assert model.to_dict()["settings"]["input_doubling"] == [0.7] * n
+    assert rt.check(model, exact)
+    with pytest.raises(rt.ReachtubeError, match=f"give {n}"):
+        rt.conform(robot, exact, torque="motor", input_doubling=[1.0])
+    with pytest.raises(rt.ReachtubeError, match="needs the notion hull"):
+        rt.conform(robot, exact, torque="motor", input_doubling=[1.0] * n, notion="exact")
+
+
 def test_saving_counts_the_models_that_the_same_motions_calibrated(
     robot: rt.Robot, data: rt.Recordings, tmp_path: Path
 ) -> None:

@@ -16,6 +16,7 @@ const CHOICES: &[&str] = &[
     "equations",
     "expansion",
     "sensor-noise",
+    "input-doubling",
     "largest-ratio",
     "largest-growth",
     "largest-outside",

@@ -72,6 +72,9 @@ pub enum Error {
     /// What drives the model cannot do what was asked.
     #[error("{0}")]
     Drive(Advice),
+    /// U was to grow with the rate of the nominal motion, and cannot.
+    #[error("U cannot grow with the rate of the nominal motion: {0}")]
+    InputDoubling(&'static str),
     /// U was to cover stiction, and cannot.
     #[error("U cannot be widened for stiction: {0}")]
     Stiction(&'static str),

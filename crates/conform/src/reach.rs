@@ -13,6 +13,7 @@ use crate::nominal::simulate::nominal;
 use crate::sets::UncertaintySets;
 use crate::tube::deviation::Nominal;
 use crate::tube::grids::Grid;
+use crate::tube::place::Place;
 use crate::tube::strand::{Lost, Strand};
 use crate::tube::tube::{Enclosure, Tube};
 
@@ -68,15 +69,21 @@ pub fn reach(problem: &Problem, tube: &Tube) -> Result<Vec<SuiteReach>> {
 
 fn linear(problem: &Problem, tube: &Tube) -> Result<Vec<SuiteReach>> {
     let (grids, disturbance) = (problem.grids()?, problem.settings().disturbance);
-    let UncertaintySets { initial_set, input_set, .. } = &tube.sets;
-    let radii_on =
-        |grid: &Grid| StepRadii::new(&grid.propagation, disturbance, initial_set, input_set);
-    let radii: Vec<StepRadii> = grids.as_slice().iter().map(radii_on).collect();
+    let places = problem.places()?;
+    let along = |place: &Place| {
+        let sets = tube.sets.along(&place.scale).into_owned();
+        let propagation = &grids.as_slice()[place.grid].propagation;
+        let UncertaintySets { initial_set, input_set, .. } = &sets;
+        let radii = StepRadii::new(propagation, disturbance, initial_set, input_set);
+        (radii, sets.input_set)
+    };
+    let along: Vec<_> = places.iter().map(along).collect();
     let reach: Vec<&ReachSets> = tube.strands.iter().filter_map(Strand::deviation).collect();
     let of_case = |case: Case| {
         let nominal = Nominal::new(grids, &case);
         let Grid { times, propagation, .. } = &grids.as_slice()[nominal.grid];
-        let (reach, radii) = (reach[nominal.grid], &radii[nominal.grid]);
+        let strand = problem.strand_of(&case, &nominal)?;
+        let (reach, (radii, input_set)) = (reach[strand], &along[strand]);
         let Nominal { trajectory, .. } = nominal;
         let tube = StepBounds::new(propagation, &trajectory, &case.inputs, reach, input_set, radii);
         let times = times.times()[..trajectory.len()].to_vec();

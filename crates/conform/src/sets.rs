@@ -1,7 +1,14 @@
+use std::borrow::Cow;
+
 use reachtube_reach::Hyperrectangle;
 use reachtube_scalar::rounding::add_up;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+/// The factors of U along a nominal motion, one per input: U has its radii times these. There are
+/// none where U is the same along every motion.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct InputScale(pub(crate) Vec<f64>);
 
 /// The uncertainty sets of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -21,6 +28,18 @@ impl UncertaintySets {
     #[must_use]
     pub fn noise_radius(&self, i: usize) -> f64 {
         self.noise_set.as_ref().map_or(0.0, |set| set.radius[i])
+    }
+
+    /// Returns the sets along a motion: the radii of U times its scale, rounded to nearest, which
+    /// defines them.
+    pub(crate) fn along(&self, InputScale(scale): &InputScale) -> Cow<'_, Self> {
+        if scale.is_empty() {
+            return Cow::Borrowed(self);
+        }
+        let mut scaled = self.clone();
+        let radii = scaled.input_set.radius.iter_mut();
+        radii.zip(scale).for_each(|(radius, factor)| *radius *= factor);
+        Cow::Owned(scaled)
     }
 
     /// The radii of U times `factor`, rounded to nearest.

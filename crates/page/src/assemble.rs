@@ -119,6 +119,10 @@ fn sets_table(model: &Model) -> SetsTable {
 /// The name of the radii that were added to the sets.
 const ALLOWANCE: &str = "Allowance added to the smallest X0, then U [SI units]";
 
+/// The name of the rates at which U is twice what it is at rest.
+const DOUBLING: &str =
+    "U, given at rest, is twice as large where the nominal motion has [rad/s² or m/s²]";
+
 fn facts(model: &Model) -> Vec<(String, String)> {
     let settings = &model.settings;
     let suites: Vec<&str> = model.data.suites.iter().map(|suite| suite.name.as_str()).collect();
@@ -163,6 +167,7 @@ fn facts(model: &Model) -> Vec<(String, String)> {
         ("SHA-256 of the model", model.sha256.clone()),
     ]
     .into_iter()
+    .chain(settings.input_doubling.iter().map(|rates| (DOUBLING, word(rates))))
     .chain((!model.allowance.is_empty()).then(|| (ALLOWANCE, word(&model.allowance))))
     .map(|(name, value)| (name.to_string(), value))
     .collect()

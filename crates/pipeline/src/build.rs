@@ -21,8 +21,10 @@ use crate::horizon::{
     HorizonWidths, Longest, candidates, longer_horizons, longest, longest_of_all, ratios,
     try_horizons, try_longer,
 };
+use crate::input_doubling::choose_input_doubling;
 use crate::remedies::TooWide;
 use crate::robot::{Evidence, Nominal, are_differentiated, prepare_for};
+use crate::rounding::percent;
 use crate::sorted::{Sorted, WARMTH, unknown_warmth};
 use crate::steps::{Steps, digest};
 use crate::stretches::{Use, check_used, entries, left_out};
@@ -240,7 +242,8 @@ fn sets(
     chooser.choices.largest_ratio = Some(largest);
     chooser.choices.largest_growth.get_or_insert(LARGEST_GROWTH);
     chooser.choices.largest_outside.get_or_insert(LARGEST_OUTSIDE);
-    let mut horizons = choose_equations(chooser, trial, recordings, largest)?;
+    let horizons = choose_equations(chooser, trial, recordings, largest)?;
+    let mut horizons = choose_input_doubling(chooser, trial, recordings, horizons, largest)?;
     let given = chooser.choices.horizon;
     let unfitted = given.unwrap_or_else(|| longest(&horizons, largest).horizon);
     choose_fit(chooser, trial, horizons.last().map_or(unfitted, |tried| tried.horizon));
@@ -383,8 +386,4 @@ fn reason_of_horizon(chosen: &Longest, tried: &[HorizonWidths], largest: f64) ->
         );
     }
     words
-}
-
-pub(crate) fn percent(ratio: f64) -> String {
-    if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "of no bounded size".into() }
 }

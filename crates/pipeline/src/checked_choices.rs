@@ -57,10 +57,14 @@ impl Choices {
             let counts = [joints, 2 * joints, 3 * joints];
             counts.contains(&values.len()) && values.iter().all(|value| value.is_finite())
         };
+        let rates = |values: &[f64], count: usize| {
+            let is_rate = |rate: &f64| (1e-9..=LARGEST_RADIUS).contains(rate);
+            values.is_empty() || values.len() == count && values.iter().all(is_rate)
+        };
         // Without an allowance, the file of choices has an empty list.
         let allowance = |values: &[f64], count: usize| values.is_empty() || radii(values, count);
         type Check<'a> = &'a dyn Fn(&[f64], usize) -> bool;
-        let lists: [(_, _, Check, _, _); 3] = [
+        let lists: [(_, _, Check, _, _); 4] = [
             ("expansion", &self.expansion, &point, joints, "one position per joint, in rad or m"),
             (
                 "sensor-noise",
@@ -68,6 +72,13 @@ impl Choices {
                 &radii,
                 2 * joints,
                 "2 radii per joint, from 0 to 1e9: first for all q, then for all qd",
+            ),
+            (
+                "input-doubling",
+                &self.input_doubling,
+                &rates,
+                joints,
+                "one acceleration per joint, from 1e-9 to 1e9 rad/s² or m/s², or []",
             ),
             (
                 "allowance",

@@ -62,6 +62,10 @@ pub struct Choices {
     /// Radii of the sensors' noise, 2n, rad and rad/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor_noise: Option<Vec<f64>>,
+    /// Accelerations of the nominal motion at which U is twice what it is at rest, n, rad/s²; empty
+    /// if U is the same along every motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub input_doubling: Option<Vec<f64>>,
     /// The largest accepted ratio of half a joint's set at the horizon to the joint's displacement.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_ratio: Option<f64>,
@@ -206,6 +210,7 @@ impl Choices {
             equations: given.equations.or(self.equations),
             expansion: given.expansion.or(self.expansion),
             sensor_noise: given.sensor_noise.or(self.sensor_noise),
+            input_doubling: given.input_doubling.or(self.input_doubling),
             largest_ratio: given.largest_ratio.or(self.largest_ratio),
             largest_growth: given.largest_growth.or(self.largest_growth),
             largest_outside: given.largest_outside.or(self.largest_outside),

@@ -61,6 +61,7 @@ pub(crate) fn first_choices<'a, 'b: 'a>(
         sensor_noise,
         equations,
         nominal,
+        input_doubling: None,
         allowance,
         from_past: false,
         largest_outside: chooser.choices.largest_outside(),

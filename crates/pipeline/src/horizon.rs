@@ -31,6 +31,9 @@ pub struct HorizonWidths {
     /// windows ask for a larger allowance than all windows do.
     #[serde(skip)]
     pub(crate) smallest: Vec<f64>,
+    /// The widest of these, with the factor for a motion that is left out.
+    #[serde(skip)]
+    pub(crate) foretold: f64,
     /// Why no sets were found.
     pub reason: Option<String>,
     /// Whether a fit was tried.
@@ -47,7 +50,8 @@ impl HorizonWidths {
 
     /// Makes the widths of the sets of all windows, by which the horizon is judged.
     pub(crate) fn of_all(horizon: f64, ratios: Vec<f64>, with_fit: bool) -> Self {
-        Self { horizon, smallest: ratios.clone(), ratios, reason: None, with_fit }
+        let (smallest, foretold) = (ratios.clone(), f64::INFINITY);
+        Self { horizon, smallest, ratios, foretold, reason: None, with_fit }
     }
 
     /// Does what [`worst`](Self::worst) does without the allowance.
@@ -61,7 +65,7 @@ impl HorizonWidths {
         trial: &Trial,
         name: &str,
         horizon: f64,
-        find: impl FnOnce() -> Result<[Vec<f64>; 2]>,
+        find: impl FnOnce() -> Result<[Vec<f64>; 3]>,
     ) -> Result<Self> {
         // JSON has no infinite ratio, as where a set was lost.
         let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
@@ -69,12 +73,13 @@ impl HorizonWidths {
         let (found, reason) = trial.journal.step(name, || match find() {
             Ok(found) => Ok((found.map(all), None)),
             Err(error) if trial.progress.is_cancelled() => Err(error),
-            Err(error) => Ok(([vec![], vec![]], Some(error.to_string()))),
+            Err(error) => Ok(([vec![], vec![], vec![]], Some(error.to_string()))),
         })?;
-        let [ratios, smallest] = found.map(|ratios: Vec<Option<f64>>| {
+        let [ratios, smallest, foretold]: [Vec<f64>; 3] = found.map(|ratios: Vec<Option<f64>>| {
             ratios.into_iter().map(|ratio| ratio.unwrap_or(f64::INFINITY)).collect()
         });
-        Ok(Self { horizon, ratios, smallest, reason, with_fit: trial.fit.is_some() })
+        let foretold = foretold.first().copied().unwrap_or(f64::INFINITY);
+        Ok(Self { horizon, ratios, smallest, foretold, reason, with_fit: trial.fit.is_some() })
     }
 }
 
@@ -150,7 +155,10 @@ pub(crate) fn try_horizon(
         other => other?,
     };
     let name = format!("{horizon} s, {most} windows, {}", trial.name());
-    let widths = |found: Widened| Ok([ratios(&found.answer), found.foretold.smallest()]);
+    let widths = |found: Widened| {
+        let foretold = vec![found.foretold.widest()];
+        Ok([ratios(&found.answer), found.foretold.smallest(), foretold])
+    };
     let found = || Widened::of_some(trial, recordings, horizon, most).and_then(widths);
     HorizonWidths::of_step(trial, &name, horizon, found).map(Some)
 }
@@ -184,8 +192,9 @@ pub(crate) fn longest_of_all(
         let name = format!("{horizon} s, all windows, {}", trial.name());
         let widths = HorizonWidths::of_step(trial, &name, horizon, || {
             let widened = Widened::new(trial, recordings, horizon)?;
-            let ratios = ratios(&found.insert(widened).answer);
-            Ok([ratios.clone(), ratios])
+            let widened = found.insert(widened);
+            let ratios = ratios(&widened.answer);
+            Ok([ratios.clone(), ratios, vec![widened.foretold.widest()]])
         })?;
         if widths.worst().1 > largest {
             wide.push(widths);

@@ -20,6 +20,7 @@ mod fold;
 mod foretold;
 mod held_out;
 mod horizon;
+mod input_doubling;
 mod joint_row;
 mod kinds;
 mod live;

@@ -26,7 +26,7 @@ const FITTED: Group = Group::Inertia;
 const PULL: f64 = 0.01;
 
 /// A choice helps if it makes the widest set narrower by this factor.
-const HELPS: f64 = 0.8;
+pub(crate) const HELPS: f64 = 0.8;
 
 /// Number of choices that are named.
 const MOST: usize = 2;

@@ -9,6 +9,11 @@ pub(crate) fn rounded_up(value: f64, digits: i32) -> f64 {
     format!("{digits}e{exponent}").parse().unwrap_or(value)
 }
 
+/// Returns the ratio of a set's width to the motion, in words.
+pub(crate) fn percent(ratio: f64) -> String {
+    if ratio.is_finite() { format!("{:.0} %", 100.0 * ratio) } else { "of no bounded size".into() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::rounded_up;

@@ -105,7 +105,8 @@ fn verified(
     let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
     let opened = job.open(progress)?;
     let robot = opened.problem.robot();
-    let rule = scenario.stop(robot, &opened.tube.sets.input_set)?;
+    let input_set = |rates: &[f64]| opened.problem.input_set_at(&opened.tube.sets, rates);
+    let rule = scenario.stop(robot, &input_set)?;
     let motions = verify(&opened.problem, &opened.tube, (&body, &scene), rule.as_ref())?;
     Ok(Verified { opened, body, scene, motions })
 }

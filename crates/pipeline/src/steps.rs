@@ -49,9 +49,9 @@ impl<'a> Steps<'a> {
             return Ok(found);
         }
         let found = run()?;
+        let value = serde_json::to_value(&found).expect("the keys of a step are strings");
+        self.found.borrow_mut().insert(name.into(), value);
         if let (journal, true) = &self.journal {
-            let value = serde_json::to_value(&found).expect("the keys of a step are strings");
-            self.found.borrow_mut().insert(name.into(), value);
             journal.save(&*self.found.borrow())?;
         }
         Ok(found)
@@ -233,9 +233,10 @@ mod tests {
         std::fs::write(&path, "{\"format\": \"reach").unwrap();
         let damaged = Steps::open(Some(&path), "b".into());
         assert_eq!(damaged.step("two", || Ok(4.0)).unwrap(), 4.0);
-        // Without a file each step is done.
+        // Without a file nothing outlives the job.
         let none = Steps::open(None, "a".into());
         assert_eq!(none.step("one", || Ok(1)).unwrap(), 1);
-        assert_eq!(none.step("one", || Ok(2)).unwrap(), 2);
+        assert_eq!(none.step("one", || Ok(2)).unwrap(), 1);
+        assert_eq!(Steps::open(None, "a".into()).step("one", || Ok(3)).unwrap(), 3);
     }
 }

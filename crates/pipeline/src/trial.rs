@@ -31,6 +31,9 @@ pub(crate) struct Trial<'a> {
     pub equations: Equations,
     /// Where nominal motions start.
     pub nominal: NominalStart,
+    /// The accelerations of nominal motions at which U is twice what it is at rest, n, rad/s², if
+    /// it grows with them.
+    pub input_doubling: Option<Vec<f64>>,
     /// Whether they start where the samples up to the start alone tell, and X0 has the error of
     /// that.
     pub from_past: bool,
@@ -76,10 +79,13 @@ impl Progress for TrialProgress<'_> {
 impl Trial<'_> {
     /// Returns what differs between the trials of a job, in words.
     pub(crate) fn name(&self) -> String {
-        let Self { robot, equations, expansion, fit, allowance, .. } = self;
+        let Self { robot, equations, expansion, fit, allowance, input_doubling, .. } = self;
         let robot = serde_json::to_string(robot.description());
         let robot = hex(&Sha256::digest(robot.expect("the keys of a description are strings")));
-        format!("{equations:?} about {expansion:?}, {fit:?}, {allowance:?}, robot {robot}")
+        format!(
+            "{equations:?} about {expansion:?}, {fit:?}, {allowance:?}, {input_doubling:?}, robot \
+             {robot}"
+        )
     }
 
     /// Returns the observer of one of the trials; `without` names a motion that it does not see.
@@ -130,6 +136,7 @@ impl Trial<'_> {
         let settings = Settings {
             noise: Noise::Fitted,
             sensor_noise: Some(self.sensor_noise.clone()),
+            input_doubling: self.input_doubling.clone(),
             nominal: if self.from_past { NominalStart::Mean } else { self.nominal },
             ..Settings::default()
         };

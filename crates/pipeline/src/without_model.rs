@@ -64,17 +64,22 @@ impl WithoutModel {
         horizon: f64,
         own: &Foretold,
     ) -> Result<Self> {
-        let mut best: Option<(Equations, f64)> = None;
+        let mut best: Option<(Trial, f64)> = None;
         for equations in Equations::KINEMATIC {
-            let other = kinematic(trial, equations);
-            let found = Widened::of_some(&other, recordings, horizon, MOST_WINDOWS)?;
-            let widest = found.foretold.widest();
-            if best.is_none_or(|(_, narrowest)| widest < narrowest) {
-                best = Some((equations, widest));
+            let same = Trial { input_doubling: None, ..kinematic(trial, equations) };
+            // At a constant velocity, U grows with nothing.
+            let growing = trial.input_doubling.is_some() && equations != Equations::Velocity;
+            let growing = growing.then(|| kinematic(trial, equations));
+            for other in std::iter::once(same).chain(growing) {
+                let found = Widened::of_some(&other, recordings, horizon, MOST_WINDOWS)?;
+                let widest = found.foretold.widest();
+                if best.as_ref().is_none_or(|(_, narrowest)| widest < *narrowest) {
+                    best = Some((other, widest));
+                }
             }
         }
-        let equations = best.map_or(Equations::Velocity, |(equations, _)| equations);
-        let other = kinematic(trial, equations);
+        let (other, _) = best.expect("there are kinematic equations");
+        let equations = other.equations;
         let Widened { answer, foretold: without, .. } = Widened::new(&other, recordings, horizon)?;
         let windows = answer.model.data.run_count();
         let narrower = |joint| without.half_width(joint) / own.half_width(joint);

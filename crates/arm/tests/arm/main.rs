@@ -8,6 +8,7 @@ mod fit_friction;
 mod fit_schunk;
 mod fold;
 mod friction;
+mod growing;
 mod guarantees;
 mod kinematic;
 mod model_file;

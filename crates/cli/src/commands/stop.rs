@@ -74,7 +74,8 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let brakes = Brakes::from_toml(&text, &args.brakes.display().to_string(), robot)?;
     let sets = &opened.tube().sets;
     let origin = args.brakes.display().to_string();
-    let category = Category::numbered(args.category, &brakes, &origin, &sets.input_set)?;
+    let input_set = |rates: &[f64]| opened.problem.input_set_at(sets, rates);
+    let category = Category::numbered(args.category, &brakes, &origin, &input_set)?;
     let recorded = args.stops.as_ref().map(DataSet::open).transpose()?;
     opened.print_notes(&args.model.data);
     let warnings = &beyond_proof_of_stops(&opened.model, &opened.problem);

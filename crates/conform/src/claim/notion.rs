@@ -57,7 +57,7 @@ impl Tube {
     /// As [`Problem::run`]; when a solution cannot be enclosed.
     pub fn new(problem: &Problem, sets: UncertaintySets) -> Result<Self> {
         match problem.dynamics().linear_system() {
-            Some(_) => Ok(Linear::tube_without_points(problem.grids()?.as_slice(), sets)),
+            Some(_) => Linear::tube_without_points(problem, sets),
             // These sets are not computed twice: the points are judged on the way.
             None => claim(problem)?.judge(&Polynomial::new(problem), &sets, &Look::proof()),
         }

@@ -19,8 +19,9 @@ use crate::data::signals::{Part, Signals};
 use crate::data::suite::SuiteReader;
 use crate::error::{Error, Result};
 use crate::progress::Progress;
-use crate::tube::deviation::Deviation;
+use crate::tube::deviation::{Deviation, Nominal};
 use crate::tube::grids::Grids;
+use crate::tube::place::Place;
 
 /// Which runs stay in memory, sample by sample, after they were folded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,6 +50,8 @@ pub struct Problem {
 pub(crate) struct Deviations {
     /// The deviations. They are infinite after a nominal motion ran away.
     pub all: Vec<Deviation>,
+    /// Where U is scaled, the places of the strands that they face.
+    pub places: Vec<Place>,
     /// Where nominal motions run away.
     pub runaways: Vec<Runaway>,
 }
@@ -280,7 +283,7 @@ impl Problem {
     ///
     /// Outer, as [`Deviation::new`].
     pub(crate) fn deviations(&self) -> Result<&[Deviation]> {
-        let Deviations { all, runaways } = self.deviations_until()?;
+        let Deviations { all, runaways, .. } = self.deviations_until()?;
         match runaways.first() {
             None => Ok(all),
             Some(Runaway { case, time, .. }) => {
@@ -297,18 +300,27 @@ impl Problem {
         }
         let grids = self.grids()?;
         let of_case = |case, runaway: Option<Runaway>| {
-            let deviation = Deviation::new(grids, &case);
+            let nominal = Nominal::new(grids, &case);
+            let (deviation, scale) = (Deviation::new(&case, &nominal), self.scale(&case, &nominal));
             Ok(match &runaway {
-                Some(at) => (deviation.lost_after(at.sample), runaway),
-                None => (deviation, None),
+                Some(at) => (deviation.lost_after(at.sample), scale, runaway),
+                None => (deviation, scale, None),
             })
         };
         let of = |suite| self.cases_until(suite, of_case);
         let suites = (0..self.read.recordings.suites.len()).map(of).collect::<Result<Vec<_>>>()?;
-        let (all, runaways): (Vec<_>, Vec<_>) = suites.into_iter().flatten().unzip();
-        let runaways = runaways.into_iter().flatten().collect();
-        let merged = || Deviations { all: Deviation::merge(all), runaways };
-        Ok(self.deviations.get_or_init(merged))
+        let cases: Vec<_> = suites.into_iter().flatten().collect();
+        let places = match self.settings().input_doubling {
+            Some(_) => Place::distinct(cases.iter().map(|(own, scale, _)| (own.strand, scale))),
+            None => Vec::new(),
+        };
+        let mut runaways = Vec::new();
+        let faced = cases.into_iter().map(|(own, scale, runaway)| {
+            runaways.extend(runaway);
+            Deviation { strand: Place::find(&places, own.strand, &scale), ..own }
+        });
+        let all = Deviation::merge(faced);
+        Ok(self.deviations.get_or_init(|| Deviations { all, places, runaways }))
     }
 }
 

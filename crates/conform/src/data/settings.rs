@@ -187,6 +187,12 @@ pub struct Settings {
     pub sensor_noise: Option<Vec<f64>>,
     /// Where nominal motions start.
     pub nominal: NominalStart,
+    /// The rates of the nominal motion at which U is twice what it is at rest, one per input: of
+    /// the last state of the part that the input drives. U has the radius
+    /// r (1 + a / b) along a motion whose largest rate is a, where b is this setting and r is the
+    /// radius that the sets have. Without it U is the same along every motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input_doubling: Option<Vec<f64>>,
     /// The motions that are held out from the fit and then calibrate its sets. They are not
     /// looked at but by [`conform`](crate::conform).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -225,6 +231,12 @@ impl Settings {
         }
         if let Some(radii) = &self.sensor_noise {
             check_list("sensor noise radius", radii, (2 * inputs, STATES), 0.0..=1e9)?;
+        }
+        if let Some(rates) = &self.input_doubling {
+            check_list("input doubling", rates, (inputs, "one per input"), 1e-9..=1e9)?;
+            if self.notion != Notion::Hull || self.method != Method::Program {
+                return Err(Error::InputDoubling("it needs the notion hull and a linear program"));
+            }
         }
         self.until.map_or(Ok(()), |until| check_range("until", None, until, &(0.0..=f64::MAX)))
     }

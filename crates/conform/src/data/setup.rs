@@ -105,8 +105,7 @@ pub trait Drive: Debug + Send + Sync {
         Ok(None)
     }
 
-    /// Returns what compensations near a motion (samples x N) share, to first order; `None` if they
-    /// share nothing.
+    /// Returns what compensations near a motion (samples x N) share, to first order, if anything.
     fn near(&self, _motion: &[f64]) -> Option<Near> {
         None
     }
@@ -321,6 +320,9 @@ impl Setup {
     /// Settings that do not fit them.
     pub fn new(drive: Arc<dyn Drive>, dynamics: System, settings: Settings) -> Result<Self> {
         settings.validate(dynamics.inputs())?;
+        if settings.input_doubling.is_some() && dynamics.linear_system().is_none() {
+            return Err(Error::InputDoubling("the model is not linear"));
+        }
         if settings.stiction && drive.dry_friction().is_none() {
             return Err(Error::Stiction(
                 "the inputs have no dry friction, as torques that are measured at the links have \

@@ -133,7 +133,8 @@ impl FitTask<'_> {
         for (grid, coefficients) in self.data.grids.iter().zip(model.coefficients.iter()) {
             let times = grid.times().iter().step_by(stride).copied().collect();
             let envelope = Envelope::new(states);
-            blocks.push(Block { times, coefficients: Arc::clone(coefficients), envelope });
+            let (coefficients, scale) = (Arc::clone(coefficients), [].into());
+            blocks.push(Block { times, coefficients, scale, envelope });
         }
         for &t in tracks {
             let (track, motion) = (&self.data.tracks[t], &model.motions[t]);

@@ -159,7 +159,7 @@ impl StepProgram<'_> {
         let n = self.fit.inputs();
         let of = |slope: &Slope| {
             let Some(reach) = &slope.reach else { return 0.0 };
-            let blocks = reach.iter().zip(&self.program.parts);
+            let blocks = reach.iter().zip(&*self.program.parts);
             blocks
                 .map(|(reach, parts)| {
                     let samples = reach.chunks_exact(2 * n).zip(parts);
@@ -178,7 +178,7 @@ impl StepProgram<'_> {
     fn entries(&self, row: StepRow, layout: &Layout) -> Vec<(usize, f64)> {
         let (t, k, i, side) = row;
         let (centre, radius) = self.reach(t, k, i);
-        let mut entries = layout.entries(centre, radius, i, side);
+        let mut entries = layout.entries(centre, radius.iter().copied(), i, side);
         let slopes = self.free.iter().map(|&p| self.slope(p, row));
         entries.extend(slopes.enumerate().map(|(at, slope)| (layout.cost.len() + at, slope)));
         entries

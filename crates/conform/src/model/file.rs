@@ -355,6 +355,11 @@ impl Model {
     pub fn inputs(&self) -> usize {
         self.input_set.dimension()
     }
+
+    /// Returns what tables call U.
+    pub(crate) fn name_of_input_set(&self) -> &'static str {
+        if self.settings.input_doubling.is_some() { "U rest" } else { "U" }
+    }
 }
 
 fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {

@@ -27,7 +27,8 @@ const DRIFT_WEIGHT: f64 = 1.0 / 16.0;
 /// The motion is cut into overlapping windows ([`Schedule`]). Each begins at a measured state, as a
 /// recording of a suite of its own does, and its values are compared with the model's set as
 /// [`check()`](crate::check()) compares the rows of recordings, whatever the model's notion is.
-/// After it was made, a monitor allocates nothing, and the time for a sample is bounded.
+/// After it was made, a monitor allocates nothing, and the time for a sample is bounded. Where U
+/// grows with the nominal motion, a window is judged at its end, when its motion is known.
 ///
 /// # Guarantee
 ///
@@ -112,7 +113,9 @@ impl Monitor {
         let propagation = Propagation::new(system, &times)?;
         let input_gains = settings.disturbance.input_gains(&propagation);
         let grid = Grid { times: Arc::new(times), propagation, input_gains };
-        let sets = Sets::new(grid, model.sets(), settings.states.rows(2 * n));
+        let parts = &setup.drive.signals().parts;
+        let doubling = settings.input_doubling.clone().map(|rates| (parts.clone(), rates));
+        let sets = Sets::new(grid, model.sets(), settings.states.rows(2 * n), doubling);
         let input = setup.drive.live_input()?;
         let windows = vec![Window::new(n); steps / every + 1];
         // Samples at even times that one sample may complete.
@@ -259,7 +262,8 @@ impl Monitor {
 impl Judge {
     /// Returns how many values may be outside at one sample.
     fn most_at_once(&self) -> usize {
-        self.sets.rows * self.windows.len()
+        let samples = if self.sets.doubling.is_some() { self.sets.grid.times.len() } else { 1 };
+        self.sets.rows * samples * self.windows.len()
     }
 
     fn take(&mut self, sample: &Sample) {
@@ -274,13 +278,13 @@ impl Judge {
         self.count += 1;
         progress.begin();
         for window in windows.iter_mut().filter(|window| window.sample.is_some()) {
-            let outside = window.judge(sets, sample, |leave| {
+            let rows = window.judge(sets, sample, |leave| {
                 progress.totals.left += u64::from(leave.first);
                 if leaves.len() < leaves.capacity() {
                     leaves.push(leave);
                 }
             });
-            progress.take(window, (sets.rows as u64, outside));
+            progress.take(window, rows);
             if window.sample == Some(sets.last()) {
                 progress.end(window);
                 window.sample = None;
@@ -311,7 +315,7 @@ impl Progress {
         self.used.copy_from_slice(&self.last);
     }
 
-    fn take(&mut self, window: &Window, (rows, outside): (u64, u64)) {
+    fn take(&mut self, window: &Window, [rows, outside]: [u64; 2]) {
         self.totals.rows += rows;
         self.totals.outside += outside;
         let used = self.used.iter_mut().zip(&window.used).zip(&mut self.largest);

@@ -6,9 +6,10 @@ use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_up, sub_down, sub_up};
 
 use crate::data::side::Side;
+use crate::data::signals::Part;
 use crate::monitor::leave::Leave;
 use crate::monitor::nominal::LiveNominal;
-use crate::sets::UncertaintySets;
+use crate::sets::{InputScale, UncertaintySets};
 use crate::tube::grids::Grid;
 use crate::tube::rows::excesses;
 use crate::tube::strand::Strand;
@@ -22,6 +23,18 @@ pub(crate) struct Sets {
     pub sets: UncertaintySets,
     /// Number of states that are rows.
     pub rows: usize,
+    /// The parts of the system, and the rates at which U is twice what it is at rest, if it grows
+    /// with the nominal motion. How large it is, a window then knows at its end.
+    pub doubling: Option<(Vec<Part>, Vec<f64>)>,
+}
+
+/// A sample of a window whose set is known at its end.
+#[derive(Debug, Clone)]
+struct KeptSample {
+    time: f64,
+    measured: Vec<f64>,
+    nominal: Vec<Interval>,
+    runs_away: bool,
 }
 
 /// A window, open or to be opened.
@@ -44,6 +57,8 @@ pub(crate) struct Window {
     /// the newest sample, 2n.
     pub used: Vec<f64>,
     pub signed: Vec<f64>,
+    /// The samples so far, where they are judged at the end.
+    kept: Vec<KeptSample>,
 }
 
 impl Window {
@@ -59,6 +74,7 @@ impl Window {
             input: vec![0.0; parts],
             used: zeros(),
             signed: zeros(),
+            kept: Vec::new(),
         }
     }
 
@@ -68,6 +84,7 @@ impl Window {
         self.corrected[0].copy_from_slice(sample.state());
         self.runs_away = false;
         self.used.fill(0.0);
+        self.kept.clear();
     }
 
     pub(crate) fn advance(&mut self, sets: &Sets, live: Option<&mut LiveNominal>, input: &[f64]) {
@@ -84,23 +101,62 @@ impl Window {
         *sample += 1;
     }
 
-    /// Compares a sample with the set, and hands what lies outside to `outside`; returns the number
-    /// of rows that do not hold.
+    /// Compares a sample with the set, and hands what lies outside to `outside`; returns how many
+    /// rows were compared, and how many of them do not hold. Where U grows with the nominal
+    /// motion, all samples are compared at the end of the window.
     pub(crate) fn judge(
         &mut self,
         sets: &Sets,
         measured: &Sample,
         mut outside: impl FnMut(Leave),
-    ) -> u64 {
-        let Some(sample) = self.sample else { return 0 };
+    ) -> [u64; 2] {
+        let Some(sample) = self.sample else { return [0; 2] };
+        let Some((parts, doubling)) = &sets.doubling else {
+            let at = (sample, measured.time, self.runs_away);
+            let state = |window: &Self, i: usize| window.nominal.state(i);
+            let count = self.compare(sets, &sets.strand, at, measured.state(), state, &mut outside);
+            return [sets.rows as u64, count];
+        };
+        self.kept.push(KeptSample {
+            time: measured.time,
+            measured: measured.state().to_vec(),
+            nominal: (0..measured.state().len()).map(|i| self.nominal.state(i)).collect(),
+            runs_away: self.runs_away,
+        });
+        if sample < sets.last() {
+            return [0; 2];
+        }
+        let kept = std::mem::take(&mut self.kept);
+        let times = &sets.grid.times.times()[..kept.len()];
+        let scale = InputScale::along(times, |k, i| kept[k].nominal[i], parts, doubling);
+        let strand = Strand::on_grid(&sets.grid, &sets.sets.along(&scale));
         let mut count = 0;
-        for (i, &value) in measured.state()[..sets.rows].iter().enumerate() {
-            let Some(bounds) = sets.strand.hull.bounds(sample, i) else { continue };
-            let (x, noise) = (self.nominal.state(i), sets.sets.noise_radius(i));
+        for (k, own) in kept.iter().enumerate() {
+            let (at, state) = ((k, own.time, own.runs_away), |_: &Self, i: usize| own.nominal[i]);
+            count += self.compare(sets, &strand, at, &own.measured, state, &mut outside);
+        }
+        self.kept = kept;
+        [(sets.rows * times.len()) as u64, count]
+    }
+
+    /// Compares the values of a sample with a strand; `state` returns the nominal one.
+    fn compare(
+        &mut self,
+        sets: &Sets,
+        strand: &Strand,
+        (sample, time, runs_away): (usize, f64, bool),
+        measured: &[f64],
+        state: impl Fn(&Self, usize) -> Interval,
+        outside: &mut impl FnMut(Leave),
+    ) -> u64 {
+        let mut count = 0;
+        for (i, &value) in measured[..sets.rows].iter().enumerate() {
+            let Some(bounds) = strand.hull.bounds(sample, i) else { continue };
+            let (x, noise) = (state(self, i), sets.sets.noise_radius(i));
             let deviation = [sub_up(value, x.lo()), sub_down(value, x.hi())];
             let mut excess = excesses(bounds, noise, deviation);
             let radius = bounds.radius + noise;
-            if self.runs_away {
+            if runs_away {
                 excess = [f64::INFINITY; 2];
             }
             let offset = value - x.mid() - 0.5 * (bounds.lower + bounds.upper);
@@ -118,7 +174,7 @@ impl Window {
                 if below > above { (Side::Lower, below) } else { (Side::Upper, above) };
             let state = State::from_index(i, self.input.len());
             outside(Leave {
-                time: measured.time,
+                time,
                 window: self.begin,
                 part: state.part + 1,
                 state,
@@ -126,33 +182,43 @@ impl Window {
                 value,
                 excess,
                 radius,
-                proved: !self.runs_away && self.is_outside(sets, (sample, i), value, side),
+                proved: !runs_away && is_outside(strand, (sample, i), (x, noise), (value, side)),
                 first: !std::mem::replace(&mut self.is_left, true),
             });
         }
         count
     }
+}
 
-    /// Returns whether a value is proved to lie outside the set.
-    ///
-    /// # Guarantee
-    ///
-    /// Compared with an outer bound of the set with V, directed rounding.
-    fn is_outside(&self, sets: &Sets, (k, i): (usize, usize), value: f64, side: Side) -> bool {
-        let Some(reach) = sets.strand.deviation() else { return false };
-        let (x, noise) = (self.nominal.state(i), sets.sets.noise_radius(i));
-        let beyond = |deviation: f64, bound: f64| sub_down(deviation, add_up(bound, noise)) > 0.0;
-        match side {
-            Side::Upper => beyond(sub_down(value, x.hi()), reach.upper_outer(k, i)),
-            Side::Lower => beyond(sub_down(x.lo(), value), -reach.lower_outer(k, i)),
-        }
+/// Returns whether a value is proved to lie outside the set around a nominal state, with the radius
+/// `noise` of V.
+///
+/// # Guarantee
+///
+/// Compared with an outer bound of the set with V, directed rounding.
+fn is_outside(
+    strand: &Strand,
+    (k, i): (usize, usize),
+    (x, noise): (Interval, f64),
+    (value, side): (f64, Side),
+) -> bool {
+    let Some(reach) = strand.deviation() else { return false };
+    let beyond = |deviation: f64, bound: f64| sub_down(deviation, add_up(bound, noise)) > 0.0;
+    match side {
+        Side::Upper => beyond(sub_down(value, x.hi()), reach.upper_outer(k, i)),
+        Side::Lower => beyond(sub_down(x.lo(), value), -reach.lower_outer(k, i)),
     }
 }
 
 impl Sets {
-    pub(crate) fn new(grid: Grid, sets: UncertaintySets, rows: usize) -> Self {
+    pub(crate) fn new(
+        grid: Grid,
+        sets: UncertaintySets,
+        rows: usize,
+        doubling: Option<(Vec<Part>, Vec<f64>)>,
+    ) -> Self {
         let strand = Strand::on_grid(&grid, &sets);
-        Self { grid, strand, sets, rows }
+        Self { grid, strand, sets, rows, doubling }
     }
 
     pub(crate) fn last(&self) -> usize {

@@ -19,7 +19,7 @@ impl Program<'_> {
         for row in self.all_reached(&unknowns) {
             if self.is_missed(&row) {
                 let Reached { index: (block, k, i, _), excess, .. } = row;
-                let gains = || (0.0, self.row(block, k, i).1.to_vec());
+                let gains = || (0.0, self.row(block, k, i).1.iter().collect());
                 let own = missing.entry((block, k, i)).or_insert_with(gains);
                 own.0 = own.0.max(excess);
             }

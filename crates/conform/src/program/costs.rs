@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use crate::data::shape::Shape;
 use crate::program::block::Block;
+use crate::program::gains::Gains;
 
 /// Number of units in a second, in which cells of time are counted: half picoseconds.
 const UNITS: f64 = 2e12;
@@ -113,7 +114,8 @@ pub(super) fn cost(
         for (rows, part) in samples.zip(parts) {
             for (i, row) in rows.chunks_exact(2 * radii).enumerate() {
                 let weight = 2.0 * part * weights[i];
-                row[radii..].iter().zip(&mut cost).for_each(|(a, w)| *w += weight * a);
+                let gains = Gains { gains: &row[radii..], scale: &block.scale };
+                gains.iter().zip(&mut cost).for_each(|(a, w)| *w += weight * a);
                 noise[i] += weight;
             }
         }

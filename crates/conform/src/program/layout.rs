@@ -69,12 +69,12 @@ impl Layout {
     pub(crate) fn entries(
         &self,
         centre: &[f64],
-        radius: &[f64],
+        radius: impl Iterator<Item = f64>,
         state: usize,
         side: Side,
     ) -> Vec<(usize, f64)> {
         let signed = centre.iter().map(|a| side.sign() * a).take(self.centres());
-        let mut row: Vec<(usize, f64)> = signed.chain(radius.iter().copied()).enumerate().collect();
+        let mut row: Vec<(usize, f64)> = signed.chain(radius).enumerate().collect();
         let noise = self.centres() + self.shape.radii();
         if self.cost.len() > noise {
             row.push((noise + state, 1.0));

@@ -6,6 +6,7 @@ pub(crate) mod costs;
 pub(crate) mod cut;
 mod cut_rows;
 pub(crate) mod dot;
+mod gains;
 pub(crate) mod layout;
 mod limits;
 mod of_problem;

@@ -11,7 +11,7 @@ impl<'a> Program<'a> {
         let (settings, shape) = (problem.settings(), problem.shape());
         let (grids, deviations) = (problem.grids()?, problem.deviations()?);
         let weights = settings.weights.of_states(shape.states);
-        let blocks = Block::of_grids(grids.as_slice(), deviations);
+        let blocks = Block::of_places(grids.as_slice(), &problem.places()?, deviations);
         Ok(Self::new((settings, shape), &weights, blocks).with_limits(problem.limits()))
     }
 }

@@ -2,10 +2,10 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
+use std::sync::Arc;
 
-use crate::data::envelope::Envelope;
 use crate::error::Result;
-use crate::program::dot::dot;
+use crate::program::block::Block;
 use crate::program::program::{Program, RowIndex, Solution};
 use crate::program::reached::Reached;
 use crate::sets::UncertaintySets;
@@ -21,12 +21,32 @@ impl Program<'_> {
         &self,
         deviations: impl IntoIterator<Item = &'d Deviation>,
     ) -> Self {
-        let mut program = self.clone();
+        let mut program = self.emptied();
         let blocks = &mut program.blocks;
-        blocks.iter_mut().for_each(|block| block.envelope = Envelope::new(self.shape.states));
-        deviations.into_iter().for_each(|d| blocks[d.grid].envelope.merge(&d.envelope));
+        deviations.into_iter().for_each(|d| blocks[d.strand].envelope.merge(&d.envelope));
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
+    }
+
+    /// Returns the program without rows.
+    fn emptied(&self) -> Self {
+        let blocks = self.blocks.iter().map(Block::emptied).collect();
+        let Self { settings, shape, step, scale, .. } = *self;
+        Self {
+            settings,
+            shape,
+            blocks,
+            groups: Arc::clone(&self.groups),
+            parts: Arc::clone(&self.parts),
+            step,
+            weights: self.weights.clone(),
+            centre_bounds: self.centre_bounds.clone(),
+            limits: self.limits.clone(),
+            cost: self.cost.clone(),
+            noise_cost: self.noise_cost.clone(),
+            scale,
+            cuts: self.cuts.clone(),
+        }
     }
 
     /// Returns what [`with_deviations`](Self::with_deviations) does for the deviations of some
@@ -37,14 +57,14 @@ impl Program<'_> {
         deviations: &[Deviation],
         is_kept: impl Fn(usize) -> bool,
     ) -> Self {
-        let mut program = self.clone();
-        for (grid, block) in program.blocks.iter_mut().enumerate() {
-            let on_grid = deviations.iter().filter(|d| d.grid == grid);
+        let mut program = self.emptied();
+        for (strand, (block, own)) in program.blocks.iter_mut().zip(&self.blocks).enumerate() {
+            let facing = deviations.iter().filter(|d| d.strand == strand);
             let (kept, left_out): (Vec<&Deviation>, Vec<&Deviation>) =
-                on_grid.partition(|d| is_kept(d.suite));
+                facing.partition(|d| is_kept(d.suite));
             let [kept, left_out] = [kept, left_out]
                 .map(|part| part.into_iter().map(|d| &d.envelope).collect::<Vec<_>>());
-            block.envelope = block.envelope.without(&left_out, &kept);
+            block.envelope = own.envelope.without(&left_out, &kept);
         }
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
@@ -58,17 +78,18 @@ impl Program<'_> {
         let is_own = |(block, k, ..): &&RowIndex| *k < samples(*block);
         let mut rows: Vec<RowIndex> = near.iter().filter(is_own).copied().collect();
         let known: HashSet<RowIndex> = rows.iter().copied().collect();
-        let last = self.indices(1).filter(|(block, k, ..)| k + 1 == samples(*block));
+        let begins = |block: usize| self.groups[block] == block;
+        let last = self.indices(1);
+        let last = last.filter(|(block, k, ..)| begins(*block) && k + 1 == samples(*block));
         rows.extend(last.filter(|row| !known.contains(row)));
         self.solve_from(&mut rows).or_else(|_| self.solve())
     }
 
     /// Returns the program with the rows of some of its blocks alone: the cost is the same.
     pub(crate) fn with_blocks(&self, keep: impl Fn(usize) -> bool) -> Self {
-        let mut program = self.clone();
-        let states = self.shape.states;
-        let others = program.blocks.iter_mut().enumerate().filter(|(block, _)| !keep(*block));
-        others.for_each(|(_, block)| block.envelope = Envelope::new(states));
+        let mut program = self.emptied();
+        let own = program.blocks.iter_mut().zip(&self.blocks).enumerate();
+        own.filter(|(index, _)| keep(*index)).for_each(|(_, (block, own))| *block = own.clone());
         program.scale = program.largest_bound().max(f64::MIN_POSITIVE);
         program
     }
@@ -78,7 +99,7 @@ impl Program<'_> {
     pub(crate) fn deciding(&self, sets: &UncertaintySets) -> Vec<RowIndex> {
         let radius = self.unknowns(sets).radius;
         let has_width =
-            |&(b, k, i, _): &RowIndex| dot(self.row(b, k, i).1, &radius) > NEGLIGIBLE_RADIUS;
+            |&(b, k, i, _): &RowIndex| self.row(b, k, i).1.dot(&radius) > NEGLIGIBLE_RADIUS;
         self.tight(sets).into_iter().filter(has_width).collect()
     }
 
@@ -148,8 +169,7 @@ impl Program<'_> {
         let unknowns = self.unknowns(sets);
         let needed = |row: Reached| {
             let (b, k, i, _) = row.index;
-            let gains = &self.row(b, k, i).1[part.clone()];
-            1.0 + row.excess / dot(gains, &unknowns.radius[part.clone()])
+            1.0 + row.excess / self.row(b, k, i).1.dot_of(part.clone(), &unknowns.radius)
         };
         let rows = self.all_reached(&unknowns).filter(|row| is_asked(row.index.1));
         let factor = rows.filter(|row| self.is_missed(row)).map(needed).fold(1.0, f64::max);
@@ -164,6 +184,7 @@ mod tests {
     use reachtube_reach::Hyperrectangle;
 
     use super::*;
+    use crate::data::envelope::Envelope;
     use crate::data::settings::Settings;
     use crate::data::shape::Shape;
     use crate::program::block::Block;
@@ -179,7 +200,8 @@ mod tests {
             let mut envelope = Envelope::new(2);
             envelope.include(0, &[0.0, 0.0, 0.5 * end, end]);
             let coefficients = Arc::new(coefficients.clone());
-            let block = Block { times: vec![0.0, 1.0], coefficients, envelope };
+            let (times, scale) = ([0.0, 1.0].into(), [].into());
+            let block = Block { times, coefficients, scale, envelope };
             let settings = Settings::default();
             let shape = Shape { states: 2, inputs: 1 };
             let program = Program::new((&settings, shape), &[1.0; 2], vec![block]);

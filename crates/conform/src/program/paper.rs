@@ -17,14 +17,14 @@ pub(crate) struct PaperSums {
 impl Program<'_> {
     pub(crate) fn paper_sums(&self, sets: &UncertaintySets) -> PaperSums {
         let unknowns = self.unknowns(sets);
-        let shares = distinct_shares(self.blocks.iter().map(|block| block.times.as_slice()));
+        let shares = distinct_shares(self.blocks.iter().map(|block| &*block.times));
         let mut sums = PaperSums { of_samples: 0.0, signed: 0.0, volume: 0.0 };
-        for (b, (shares, parts)) in shares.iter().zip(&self.parts).enumerate() {
+        for (b, (shares, parts)) in shares.iter().zip(&*self.parts).enumerate() {
             for (k, (share, part)) in shares.iter().zip(parts).enumerate() {
                 let rows = || (0..self.shape.states).map(|i| self.row(b, k, i));
-                let edges = rows().map(|(centre, _)| 2.0 * dot(centre, &unknowns.radius));
+                let edges = rows().map(|(centre, _)| 2.0 * dot(centre, unknowns.radius_of(b)));
                 sums.signed += share * edges.sum::<f64>();
-                let radii = || rows().map(|(_, radius)| dot(radius, &unknowns.radius));
+                let radii = || rows().map(|(_, radius)| radius.dot(&unknowns.radius));
                 let widths = radii()
                     .enumerate()
                     .map(|(i, radius)| 2.0 * self.weights[i] * (radius + sets.noise_radius(i)));

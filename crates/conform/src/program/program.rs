@@ -11,6 +11,8 @@
 //! stands, and blocks at one time count by their mean (docs/method.md, corrections A, E and F).
 //! Inside the program w_k is counted in mean steps.
 
+use std::sync::Arc;
+
 use reachtube_reach::Hyperrectangle;
 
 use crate::data::settings::{Noise, Settings};
@@ -21,6 +23,7 @@ use crate::program::block::Block;
 use crate::program::costs::{SampleTimes, cost};
 use crate::program::cut::Cut;
 use crate::program::dot::dot;
+use crate::program::gains::Gains;
 use crate::program::layout::{Layout, Limits};
 use crate::program::solver::{FINE, Triplets, polished, solve_cone};
 use crate::search::optimality::optimality_gap;
@@ -53,14 +56,16 @@ pub(crate) struct Program<'a> {
     pub(super) settings: &'a Settings,
     pub(super) shape: Shape,
     pub(super) blocks: Vec<Block>,
+    /// For each block, the first one with the same coefficients.
+    pub(super) groups: Arc<[usize]>,
     /// For each block and sample, the time for which it stands, in mean steps.
-    pub(crate) parts: Vec<Vec<f64>>,
+    pub(crate) parts: Arc<Vec<Vec<f64>>>,
     /// The mean step, s.
     pub(super) step: f64,
     /// The weight of each state, s.
     pub(super) weights: Vec<f64>,
     /// Between what each centre (c_x, c_u) must lie, where that is restricted.
-    centre_bounds: Vec<[f64; 2]>,
+    pub(super) centre_bounds: Vec<[f64; 2]>,
     pub(super) limits: Limits,
     /// Cost of each radius (r_x, r_u), in mean steps.
     pub(crate) cost: Vec<f64>,
@@ -96,14 +101,15 @@ impl<'a> Program<'a> {
         weights: &[f64],
         blocks: Vec<Block>,
     ) -> Self {
-        let times = blocks.iter().map(|block| block.times.as_slice());
+        let times = blocks.iter().map(|block| &*block.times);
         let SampleTimes { parts, step } = SampleTimes::new(times);
         let (cost, noise_cost) = cost(shape, &blocks, &parts, weights);
         let mut program = Self {
             settings,
             shape,
+            groups: Block::groups(&blocks),
             blocks,
-            parts,
+            parts: Arc::new(parts),
             step,
             weights: weights.to_vec(),
             centre_bounds: Vec::new(),
@@ -195,14 +201,17 @@ impl<'a> Program<'a> {
 
     pub(crate) fn first_rows(&self) -> Vec<RowIndex> {
         let longest = self.blocks.iter().map(|block| block.envelope.len()).max().unwrap_or(0);
-        self.indices((longest / 8).max(1)).collect()
+        let indices = self.indices((longest / 8).max(1));
+        indices.filter(|(b, ..)| self.groups[*b] == *b).collect()
     }
 
     /// The entries of E_k and of R_k in row i.
-    pub(crate) fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], &[f64]) {
+    pub(crate) fn row(&self, b: usize, k: usize, i: usize) -> (&[f64], Gains<'_>) {
         let width = self.shape.radii();
         let start = k * self.shape.entries() + i * 2 * width;
-        self.blocks[b].coefficients[start..start + 2 * width].split_at(width)
+        let Block { coefficients, scale, .. } = &self.blocks[b];
+        let (centre, gains) = coefficients[start..start + 2 * width].split_at(width);
+        (centre, Gains { gains, scale })
     }
 
     pub(crate) fn run(&self, (b, k, i, side): RowIndex) -> u32 {
@@ -214,14 +223,17 @@ impl<'a> Program<'a> {
     }
 
     pub(crate) fn unknowns(&self, sets: &UncertaintySets) -> Unknowns {
-        let join = |pick: fn(&Hyperrectangle) -> &Vec<f64>| {
+        let join = |pick: fn(&Hyperrectangle) -> &Vec<f64>| -> Vec<f64> {
             pick(&sets.initial_set).iter().chain(pick(&sets.input_set)).copied().collect()
         };
         let free = self.settings.noise == Noise::Fitted;
         let noise = |i: usize| if free { sets.noise_radius(i) } else { 0.0 };
+        let radius = join(|set| &set.radius);
+        let scaled = self.blocks.iter().map(|block| block.scaled(&radius)).collect();
         Unknowns {
             centre: join(|set| &set.centre),
-            radius: join(|set| &set.radius),
+            radius,
+            scaled,
             free_noise: (0..self.shape.states).map(noise).collect(),
         }
     }
@@ -266,7 +278,7 @@ impl<'a> Program<'a> {
         for &index in indices {
             let (b, k, i, side) = index;
             let (centre, radius) = self.row(b, k, i);
-            let entries = layout.entries(centre, radius, i, side);
+            let entries = layout.entries(centre, radius.iter(), i, side);
             let scale = entries.iter().map(|(j, a)| (a * unit[*j]).abs()).fold(0.0, f64::max);
             triplets.row(entries.into_iter().map(|(j, a)| (j, -a * unit[j] / scale)));
             bounds.push(-self.bound(index) / (scale * self.scale));
@@ -296,9 +308,18 @@ impl<'a> Program<'a> {
     }
 }
 
-/// The unknowns of the program, unscaled.
+/// The unknowns of the program, in their own units.
 pub(crate) struct Unknowns {
     pub(super) centre: Vec<f64>,
     pub(super) radius: Vec<f64>,
+    /// For each block, the radii times its factors; empty if these are 1.
+    scaled: Vec<Vec<f64>>,
     pub(super) free_noise: Vec<f64>,
+}
+
+impl Unknowns {
+    /// Returns the radii of X0 and U along the motions of a block.
+    pub(super) fn radius_of(&self, b: usize) -> &[f64] {
+        if self.scaled[b].is_empty() { &self.radius } else { &self.scaled[b] }
+    }
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use crate::data::side::Side;
 use crate::program::dot::dot;
+use crate::program::gains::Gains;
 use crate::program::program::{Program, ROUNDING, RowIndex, TIGHT, Unknowns};
 use crate::sets::UncertaintySets;
 
@@ -36,8 +37,8 @@ impl Program<'_> {
 
     pub(crate) fn reached(&self, index: RowIndex, unknowns: &Unknowns) -> Reached {
         let (b, k, i, _) = index;
-        let (centre, radius) = self.row(b, k, i);
-        let reach = [dot(centre, &unknowns.centre), dot(radius, &unknowns.radius)];
+        let (centre, Gains { gains, .. }) = self.row(b, k, i);
+        let reach = [dot(centre, &unknowns.centre), dot(gains, unknowns.radius_of(b))];
         self.beside(index, reach, unknowns)
     }
 
@@ -50,8 +51,8 @@ impl Program<'_> {
             .flat_map(|(b, block)| (0..block.envelope.len()).map(move |k| (b, k)));
         let rows = samples.flat_map(move |(b, k)| (0..states).map(move |i| (b, k, i)));
         rows.flat_map(move |(b, k, i)| {
-            let (centre, radius) = self.row(b, k, i);
-            let reach = [dot(centre, &unknowns.centre), dot(radius, &unknowns.radius)];
+            let (centre, Gains { gains, .. }) = self.row(b, k, i);
+            let reach = [dot(centre, &unknowns.centre), dot(gains, unknowns.radius_of(b))];
             Side::BOTH.map(|side| self.beside((b, k, i, side), reach, unknowns))
         })
     }
@@ -65,7 +66,8 @@ impl Program<'_> {
         Reached { index, excess, radius }
     }
 
-    /// Returns the worst violated row of each window, state and side that is not among `known` yet.
+    /// Returns the worst violated row of each window, state and side, over the blocks that share
+    /// their coefficients, that is not among `known` yet.
     pub(super) fn violated(&self, sets: &UncertaintySets, known: &[RowIndex]) -> Vec<RowIndex> {
         let unknowns = self.unknowns(sets);
         let known: HashSet<&RowIndex> = known.iter().collect();
@@ -77,7 +79,7 @@ impl Program<'_> {
             }
             let (b, k, i, side) = index;
             let window = k * WINDOWS / self.blocks[b].envelope.len();
-            let key = (b, window, i, side == Side::Upper);
+            let key = (self.groups[b], window, i, side == Side::Upper);
             let entry = worst.entry(key).or_insert((excess, index));
             if excess > entry.0 {
                 *entry = (excess, index);

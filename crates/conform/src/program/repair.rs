@@ -1,6 +1,5 @@
 //! The repair of the solver's answer: sets that satisfy every row up to rounding.
 
-use crate::program::dot::dot;
 use crate::program::program::{Program, ROUNDING};
 use crate::program::reached::Reached;
 use crate::sets::UncertaintySets;
@@ -16,41 +15,38 @@ impl Program<'_> {
     /// The solver meets a row to a part of the largest row, so a small one may miss most of its
     /// reach.
     pub(crate) fn repaired(&self, sets: &UncertaintySets) -> UncertaintySets {
-        let scaled = sets.inflated(self.worst_ratio(sets), 0.0);
-        let widened = self.widened(sets);
+        let (ratio, factor, terms) = self.missing_parts(sets);
+        let scaled = sets.inflated(ratio, 0.0);
+        let mut widened = sets.clone();
+        let UncertaintySets { initial_set, input_set, .. } = &mut widened;
+        let radii = initial_set.radius.iter_mut().chain(&mut input_set.radius);
+        let widening = radii.zip(&terms).filter(|(_, term)| **term > 0.0);
+        widening.for_each(|(radius, term)| *radius += factor * term);
         if self.cost_in_steps(&widened) < self.cost_in_steps(&scaled) { widened } else { scaled }
     }
 
-    /// The sets with radii that are larger by terms of the same cost, but for radii that have a
-    /// limit, so that every row holds; infinite if the radii without a limit are in no row.
-    fn widened(&self, sets: &UncertaintySets) -> UncertaintySets {
+    /// Returns what every row needs to hold: the factor of all radii, at least 1, which is the
+    /// largest ratio of what a row needs to what the radii give it; or else the factor of terms
+    /// that are added to the radii, and these terms, of the same cost each, but for radii that have
+    /// a limit. That factor is infinite if the radii without a limit are in no row.
+    fn missing_parts(&self, sets: &UncertaintySets) -> (f64, f64, Vec<f64>) {
         let unknowns = self.unknowns(sets);
         let largest = self.cost.iter().copied().fold(0.0, f64::max);
         let is_limited = |j: usize| self.limits.of_start(j).is_finite();
         let term =
             |(j, w): (usize, &f64)| if *w > 0.0 && !is_limited(j) { largest / w } else { 0.0 };
         let terms: Vec<f64> = self.cost.iter().enumerate().map(term).collect();
-        let needed = |Reached { index: (b, k, i, _), excess, .. }: Reached| {
-            let gain = || dot(self.row(b, k, i).1, &terms);
-            if excess > ROUNDING * self.scale { excess / gain() } else { 0.0 }
-        };
-        let factor = self.all_reached(&unknowns).map(needed).fold(0.0, f64::max);
-        let mut widened = sets.clone();
-        let UncertaintySets { initial_set, input_set, .. } = &mut widened;
-        let radii = initial_set.radius.iter_mut().chain(&mut input_set.radius);
-        let widening = radii.zip(&terms).filter(|(_, term)| **term > 0.0);
-        widening.for_each(|(radius, term)| *radius += factor * term);
-        widened
-    }
-
-    /// The factor by which the radii must grow so that every row holds, at least 1: the largest
-    /// ratio of what a row needs to what the radii give it.
-    fn worst_ratio(&self, sets: &UncertaintySets) -> f64 {
-        let unknowns = self.unknowns(sets);
-        let ratio = |Reached { excess, radius, .. }: Reached| {
-            if radius > ROUNDING * self.scale { 1.0 + excess / radius } else { 1.0 }
-        };
-        self.all_reached(&unknowns).map(ratio).fold(1.0, f64::max)
+        let negligible = ROUNDING * self.scale;
+        let (mut ratio, mut factor) = (1.0_f64, 0.0_f64);
+        for Reached { index: (b, k, i, _), excess, radius } in self.all_reached(&unknowns) {
+            if radius > negligible {
+                ratio = ratio.max(1.0 + excess / radius);
+            }
+            if excess > negligible {
+                factor = factor.max(excess / self.row(b, k, i).1.dot(&terms));
+            }
+        }
+        (ratio, factor, terms)
     }
 }
 
@@ -77,7 +73,8 @@ mod tests {
             [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.5], [0.0, 1.0, 1.0]].map(row).concat();
         let mut envelope = Envelope::new(2);
         envelope.include(0, &[0.0, 0.0, 1.0, 1.0]);
-        let block = Block { times: vec![0.0, 1.0], coefficients: Arc::new(coefficients), envelope };
+        let (times, scale) = ([0.0, 1.0].into(), [].into());
+        let block = Block { times, coefficients: Arc::new(coefficients), scale, envelope };
         let settings = Settings::default();
         let shape = Shape { states: 2, inputs: 1 };
         let limits = Limits { noise: None, start: Some(vec![1e-9; 2]) };

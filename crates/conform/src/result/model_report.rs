@@ -1,7 +1,7 @@
 //! The report of a model: what was proved, the sets, and what follows for other motions.
 
 use reachtube_recordings::State;
-use reachtube_scalar::number::interval;
+use reachtube_scalar::number::{interval, significant};
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::json;
@@ -118,6 +118,12 @@ fn sets(model: &Model) -> Section {
         format!("variance explained by the nominal motions{by}"),
         format!("q {} %; qd {} %", list(q), list(qd)),
     );
+    if let Some(rates) = &model.settings.input_doubling {
+        let unit = model.signals.units_of_state(1).list();
+        let rates = spaced(rates.iter().map(|rate| significant(*rate, 3)));
+        section
+            .fact("U is twice that at rest where qd changes by", format!("{rates} {unit} per s"));
+    }
     if !model.input_error.is_empty() {
         let unit = model.signals.units_of_inputs().list();
         let errors = spaced(model.input_error.iter().map(|error| format!("{error:.2}")));
@@ -130,8 +136,12 @@ fn table_of_sets(model: &Model) -> Table {
     let n = model.inputs();
     let [q, qd] = [0, 1].map(|at| model.signals.units_of_state(at));
     let u = model.signals.units_of_inputs();
-    let mut header =
-        vec![model.signals.noun.clone(), q.head("X0 q"), qd.head("X0 qd"), u.head("U")];
+    let mut header = vec![
+        model.signals.noun.clone(),
+        q.head("X0 q"),
+        qd.head("X0 qd"),
+        u.head(model.name_of_input_set()),
+    ];
     if model.noise_set.is_some() {
         header.extend([q.head("V q"), qd.head("V qd")]);
     }

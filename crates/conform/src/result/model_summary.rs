@@ -132,7 +132,7 @@ pub(super) fn table_of_sets(model: &Model, sets: &AtHorizon, factors: Option<&[f
         q.head(&format!("q at {:.3} s", sets.horizon)),
         "of motion".into(),
         qd.head("qd"),
-        u.head("U"),
+        u.head(model.name_of_input_set()),
     ];
     header.extend(factors.map(|_| "held out".into()));
     let half = |unit: &reachtube_finding::Units, part: usize, radius: f64| match radius.is_finite()

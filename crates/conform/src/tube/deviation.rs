@@ -8,11 +8,12 @@ use crate::data::case::Case;
 use crate::data::envelope::Envelope;
 use crate::tube::grids::Grids;
 
-/// The envelope of the deviations of one suite on one grid.
+/// The envelope of the deviations of one suite from nominal motions that face the same sets.
 #[derive(Debug, Clone)]
 pub(crate) struct Deviation {
     pub suite: usize,
-    pub grid: usize,
+    /// The sets that they face.
+    pub strand: usize,
     /// The deviations; each bound is outer.
     pub envelope: Envelope,
 }
@@ -40,19 +41,18 @@ impl Nominal {
 }
 
 impl Deviation {
-    /// Computes the deviations of a case from its nominal motion.
+    /// Computes the deviations of a case from its nominal motion, on the strand of its grid.
     ///
     /// # Guarantee
     ///
     /// Outer: the exact deviation of every run from the exact solution of the model lies in the
     /// envelope.
-    pub(crate) fn new(grids: &Grids, case: &Case) -> Self {
-        let Nominal { grid, trajectory } = Nominal::new(grids, case);
+    pub(crate) fn new(case: &Case, Nominal { grid, trajectory }: &Nominal) -> Self {
         let envelope = case.measured.map(
             |k, i, upper| sub_up(upper, trajectory.state(k)[i].lo()),
             |k, i, lower| sub_down(lower, trajectory.state(k)[i].hi()),
         );
-        Self { suite: case.suite, grid, envelope }
+        Self { suite: case.suite, strand: *grid, envelope }
     }
 
     pub(crate) fn lost_after(self, last: usize) -> Self {
@@ -64,13 +64,13 @@ impl Deviation {
         Self { envelope, ..self }
     }
 
-    /// Merges the deviations of one suite on one grid: they face the same set, whether or not they
+    /// Merges the deviations of one suite that face the same set, whether or not they
     /// share their nominal motion.
     pub(crate) fn merge(parts: impl IntoIterator<Item = Self>) -> Vec<Self> {
         let mut merged: Vec<Self> = Vec::new();
         for part in parts {
-            let key = (part.suite, part.grid);
-            match merged.iter_mut().find(|known| (known.suite, known.grid) == key) {
+            let key = (part.suite, part.strand);
+            match merged.iter_mut().find(|known| (known.suite, known.strand) == key) {
                 Some(known) => known.envelope.merge(&part.envelope),
                 None => merged.push(part),
             }

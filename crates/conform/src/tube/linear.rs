@@ -16,6 +16,7 @@ use crate::sets::UncertaintySets;
 use crate::tube::direction::Direction;
 use crate::tube::grids::Grid;
 use crate::tube::judged::{At, Judged};
+use crate::tube::place::Place;
 use crate::tube::plant::{Costs, Plant, Round, Slice, Watch};
 use crate::tube::state::SearchState;
 use crate::tube::strand::Strand;
@@ -27,7 +28,7 @@ const HELD: usize = 24;
 /// Equal parts of a sample over which a disturbance is held that may be any measurable function.
 pub(crate) const PARTS: usize = 2;
 
-/// A linear model over recordings. Its strands are grids.
+/// A linear model over recordings. Its strands are grids: where U is scaled, no points are asked.
 pub(crate) struct Linear<'a> {
     problem: &'a Problem,
     pub grids: &'a [Grid],
@@ -64,9 +65,14 @@ impl<'a> Linear<'a> {
         Ok(self.program.get_or_init(|| program))
     }
 
-    pub(crate) fn tube_without_points(grids: &[Grid], sets: UncertaintySets) -> Tube {
-        let strands = grids.iter().map(|grid| Strand::on_grid(grid, &sets)).collect();
-        Tube::of(sets, Enclosure::Inner, strands)
+    pub(crate) fn tube_without_points(problem: &Problem, sets: UncertaintySets) -> Result<Tube> {
+        let (grids, places) = (problem.grids()?.as_slice(), problem.places()?);
+        let strand = |Place { grid, scale, cases }: &Place| Strand {
+            cases: *cases,
+            ..Strand::on_grid(&grids[*grid], &sets.along(scale))
+        };
+        let strands = places.iter().map(strand).collect();
+        Ok(Tube::of(sets, Enclosure::Inner, strands))
     }
 
     pub(crate) fn slice<'b>(&'b self, sets: &'b UncertaintySets, at: At) -> LinearSlice<'b> {
@@ -119,7 +125,7 @@ impl Plant for Linear<'_> {
     }
 
     fn tube(&self, sets: &UncertaintySets, watch: Option<&Watch>) -> Result<(Tube, Judged)> {
-        let tube = Self::tube_without_points(self.grids, sets.clone());
+        let tube = Self::tube_without_points(self.problem, sets.clone())?;
         let Some(watch) = watch else { return Ok((tube, Judged::default())) };
         let samples = self.grids.iter().enumerate().flat_map(|(grid, of)| {
             (1..of.times.len()).map(move |sample| (grid as u32, sample as u32))

@@ -106,5 +106,6 @@ fn block(
         |k, i, lower| from_nominal(k, i, lower) + correction.at(k, i, Side::Lower),
     );
     let coefficients = sensitivity.coefficients.into();
-    Block { times: case.grid.times().to_vec(), coefficients, envelope }
+    let (times, scale) = (case.grid.times().into(), [].into());
+    Block { times, coefficients, scale, envelope }
 }

@@ -65,7 +65,7 @@ impl<'a> RecordedBounds<'a> {
     pub(crate) fn all(problem: &'a Problem) -> Result<Vec<Self>> {
         let of_grid = |deviation: &'a Deviation| Self {
             suite: deviation.suite,
-            strand: deviation.grid,
+            strand: deviation.strand,
             envelope: &deviation.envelope,
         };
         Ok(match problem.dynamics().linear_system() {

@@ -32,6 +32,8 @@ pub struct Lost {
 #[derive(Debug)]
 pub(crate) struct Strand {
     pub times: Arc<TimeGrid>,
+    /// The number of cases whose sets these are, where U is scaled; otherwise 1.
+    pub cases: usize,
     /// The sets at the samples.
     pub hull: Hull,
     /// The early end of the sets, if any.
@@ -61,7 +63,7 @@ pub(crate) struct HullBounds {
 impl Strand {
     pub(crate) fn on_grid(grid: &Grid, sets: &UncertaintySets) -> Self {
         let (times, hull) = (Arc::clone(&grid.times), Hull::Deviation(grid.reach(sets)));
-        Self { times, hull, lost: None }
+        Self { times, cases: 1, hull, lost: None }
     }
 
     pub(crate) fn along(case: &Case, flowpipe: Flowpipe) -> Self {
@@ -72,7 +74,7 @@ impl Strand {
                 Some(Lost { case: case.name.clone(), time: *time, state, nominal: false })
             }
         };
-        Self { times: Arc::clone(&case.grid), hull: Hull::State(flowpipe), lost }
+        Self { times: Arc::clone(&case.grid), cases: 1, hull: Hull::State(flowpipe), lost }
     }
 
     pub(crate) fn deviation(&self) -> Option<&ReachSets> {
@@ -87,6 +89,11 @@ impl Strand {
             Hull::Deviation(_) => None,
             Hull::State(flowpipe) => Some(flowpipe),
         }
+    }
+
+    /// Returns whether another strand is on the same grid, with U at another scale.
+    pub(crate) fn shares(&self, other: &Self) -> bool {
+        self.deviation().is_some() && Arc::ptr_eq(&self.times, &other.times)
     }
 
     /// Returns the last sample and its time, s.

@@ -72,14 +72,26 @@ impl Tube {
 
     /// Returns the end of the longest recording, s, and the radii of the interval hull with the
     /// noise set at the end of each recording, the largest in each state, 2n; infinite if a
-    /// reachable set ends early.
+    /// reachable set ends early. Recordings on one grid whose sets differ by the scale of U count
+    /// by their mean.
     pub(crate) fn at_end(&self) -> (f64, Vec<f64>) {
-        let mut all = (0.0f64, vec![0.0f64; self.sets.initial_set.dimension()]);
-        for (strand, (sample, time)) in (0..).zip(self.strands.iter().map(Strand::end)) {
-            let radii = self.radii((strand, sample as u32));
+        let states = self.sets.initial_set.dimension();
+        let mut all = (0.0f64, vec![0.0f64; states]);
+        let mut strands = (0..).zip(&self.strands).peekable();
+        while let Some((first, strand)) = strands.next() {
+            let (sample, time) = strand.end();
+            let mut sums: Vec<f64> = self.radii((first, sample as u32));
+            sums.iter_mut().for_each(|sum| *sum *= strand.cases as f64);
+            let mut cases = strand.cases;
+            while let Some((next, other)) = strands.next_if(|(_, other)| strand.shares(other)) {
+                cases += other.cases;
+                let radii = self.radii((next, sample as u32));
+                let pairs = sums.iter_mut().zip(radii);
+                pairs.for_each(|(sum, radius)| *sum += radius * other.cases as f64);
+            }
             all.0 = all.0.max(time);
-            let pairs = all.1.iter_mut().zip(radii);
-            pairs.for_each(|(largest, radius)| *largest = largest.max(radius));
+            let pairs = all.1.iter_mut().zip(sums);
+            pairs.for_each(|(largest, sum)| *largest = largest.max(sum / cases as f64));
         }
         all
     }

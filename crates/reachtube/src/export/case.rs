@@ -77,7 +77,7 @@ impl ExportCase {
             ),
             system: System::new(problem.dynamics(), arm.robot().kinds()),
             start: case.start.clone(),
-            sets: tube.sets.clone(),
+            sets: problem.sets_along(&tube.sets, case)?.into_owned(),
             grid: case.grid.as_ref().clone(),
             inputs: case.inputs.to_vec(),
             disturbance: settings.disturbance,

@@ -227,12 +227,16 @@ impl Scenario {
     }
 
     /// Returns the stops of the scenario, with their brakes; `None` if it has none. The torque of
-    /// the drives may be off by any vector of `input_set`.
+    /// the drives may be off by any vector of the set that `input_set` returns for decelerations.
     ///
     /// # Errors
     ///
     /// A file that cannot be read; [`Error::Syntax`] and [`Error::Invalid`], with the line.
-    pub fn stop(&self, robot: &Robot, input_set: &Hyperrectangle) -> Result<Option<StopRule>> {
+    pub fn stop(
+        &self,
+        robot: &Robot,
+        input_set: &dyn Fn(&[f64]) -> Hyperrectangle,
+    ) -> Result<Option<StopRule>> {
         let Some(table) = &self.file.stop else { return Ok(None) };
         let at = table.span().start;
         let invalid = |problem: &str, remedy: &str| self.invalid(at, "stop: ", problem, remedy);

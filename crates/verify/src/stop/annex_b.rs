@@ -84,8 +84,8 @@ struct Case {
 }
 
 /// Encloses the stops of the table. The controller knows the load; the error of its torque lies in
-/// `input_set`. Postures come from a search, so that the greatest extension is not proved to be the
-/// greatest.
+/// the set that `input_set` returns for decelerations. Postures come from a search, so that the
+/// greatest extension is not proved to be the greatest.
 ///
 /// # Guarantee
 ///
@@ -98,7 +98,7 @@ struct Case {
 pub(crate) fn annex_b(
     robot: &Robot,
     brakes: &Brakes,
-    input_set: &Hyperrectangle,
+    input_set: &dyn Fn(&[f64]) -> Hyperrectangle,
 ) -> Result<AnnexB> {
     let mut notes = Vec::new();
     let unknown = robot.joints().iter().filter(|joint| joint.velocity_limit.is_none());

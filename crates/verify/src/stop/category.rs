@@ -24,14 +24,20 @@ pub enum Category {
 
 impl Category {
     /// Returns category 1 with the deceleration of the brakes' file and the error of the drives'
-    /// torque; `None` if the file has no deceleration.
-    pub(crate) fn one(brakes: &Brakes, input_set: &Hyperrectangle) -> Option<Self> {
+    /// torque, which `input_set` returns for decelerations; `None` if the file has none.
+    pub(crate) fn one(
+        brakes: &Brakes,
+        input_set: &dyn Fn(&[f64]) -> Hyperrectangle,
+    ) -> Option<Self> {
         let limits = brakes.deceleration.clone()?;
-        Some(Self::One { limits, input_set: input_set.clone() })
+        let input_set = input_set(&limits);
+        Some(Self::One { limits, input_set })
     }
 
     /// Returns the category of a number, 0 or 1, with the deceleration of the brakes' file and the
-    /// error of the drives' torque; `origin` names that file in errors.
+    /// error of the drives' torque, which `input_set` returns for decelerations
+    /// ([`Problem::input_set_at`](reachtube_conform::Problem::input_set_at)); `origin` names that
+    /// file in errors.
     ///
     /// # Errors
     ///
@@ -40,7 +46,7 @@ impl Category {
         number: u8,
         brakes: &Brakes,
         origin: &str,
-        input_set: &Hyperrectangle,
+        input_set: &dyn Fn(&[f64]) -> Hyperrectangle,
     ) -> Result<Self> {
         match number {
             0 => Ok(Self::Zero),

@@ -66,7 +66,8 @@ pub fn stop_study(
     let robot = problem.robot();
     let recorded = recorded.map(|source| recorded_stops(robot, brakes, category, source));
     let recorded = recorded.transpose()?.unwrap_or_default();
-    let annex_b = table.then(|| annex_b(robot, brakes, &sets.input_set)).transpose()?;
+    let input_set = |rates: &[f64]| problem.input_set_at(sets, rates);
+    let annex_b = table.then(|| annex_b(robot, brakes, &input_set)).transpose()?;
     let along = |brakes: &Brakes| stops_along(problem, brakes, category, every);
     let stops = along(brakes)?;
     let span = DelaySpan::new(&stops, brakes, along)?;

@@ -87,6 +87,16 @@ pub(crate) struct SetArguments {
         allow_hyphen_values = true
     )]
     pub sensor_noise: Option<String>,
+    /// Accelerations of the nominal motion at which U is twice what it is at rest, n numbers, in
+    /// rad/s² [default: U is the same along every motion]
+    #[arg(
+        long,
+        hide_short_help = true,
+        help_heading = "Sets",
+        value_name = "A,A,..",
+        allow_hyphen_values = true
+    )]
+    pub input_doubling: Option<String>,
     /// First state of the nominal motions
     #[arg(
         long, hide_short_help = true,
@@ -164,11 +174,24 @@ impl SetArguments {
                 Some(list) => Some(numbers("--sensor-noise", "", list, joints)?),
                 None => None,
             },
+            input_doubling: match &self.input_doubling {
+                Some(list) => Some(plain_numbers("--input-doubling", list)?),
+                None => None,
+            },
             nominal: self.nominal,
             calibrate: self.calibrate.clone(),
             ..usual
         })
     }
+}
+
+/// Parses a list of numbers.
+fn plain_numbers(option: &'static str, list: &str) -> Result<Vec<f64>> {
+    let wrong = |text: &str| {
+        let problem = format!("{option}: \"{text}\" is not a number; give one per joint");
+        Error::setting(problem)
+    };
+    list.split(',').map(|text| text.trim().parse().map_err(|_| wrong(text))).collect()
 }
 
 /// Parses one number per state: 2n numbers, or 2 that stand for all positions and all velocities.
