@@ -93,8 +93,7 @@ impl Problem {
     }
 
     /// Returns U where the states that the inputs drive change at the rates `rates` at most, such
-    /// as decelerations. It is the model's U unless that grows with the
-    /// nominal motion.
+    /// as decelerations. It is the model's U unless that grows with the nominal motion.
     #[must_use]
     pub fn input_set_at(&self, sets: &UncertaintySets, rates: &[f64]) -> Hyperrectangle {
         let scale = |doubling: &Vec<f64>| InputScale::at(rates.iter().copied(), doubling);
