@@ -73,7 +73,9 @@ pub enum Error {
     #[error("{0}")]
     Drive(Advice),
     /// U was to grow with the rate of the nominal motion, and cannot.
-    #[error("U cannot grow with the rate of the nominal motion: {0}")]
+    #[error(
+        "U grows with the nominal motion, which needs {0}; choose that, or leave input doubling out"
+    )]
     InputDoubling(&'static str),
     /// U was to cover stiction, and cannot.
     #[error("U cannot be widened for stiction: {0}")]

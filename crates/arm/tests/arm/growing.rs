@@ -137,7 +137,10 @@ fn what_it_cannot_be_used_with_is_refused() {
         refused(|arm, _| arm.abstraction.order = 3),
     ];
     for error in wrong {
-        assert!(error.to_string().starts_with("U cannot grow with the rate"), "{error}");
+        assert!(
+            error.to_string().starts_with("U grows with the nominal motion, which needs"),
+            "{error}"
+        );
     }
     let error = refused(|_, settings| settings.input_doubling = Some(vec![0.0; 2])).to_string();
     assert!(error.contains("input doubling"), "{error}");

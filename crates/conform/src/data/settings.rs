@@ -188,9 +188,9 @@ pub struct Settings {
     /// Where nominal motions start.
     pub nominal: NominalStart,
     /// The rates of the nominal motion at which U is twice what it is at rest, one per input: of
-    /// the last state of the part that the input drives. U has the radius
-    /// r (1 + a / b) along a motion whose largest rate is a, where b is this setting and r is the
-    /// radius that the sets have. Without it U is the same along every motion.
+    /// the last state of the part that the input drives. U has the radius r (1 + a / b) along a
+    /// motion whose largest rate is a, where b is this setting, r is the radius that the sets have,
+    /// and a / b is rounded up to 64ths. Without it U is the same along every motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input_doubling: Option<Vec<f64>>,
     /// The motions that are held out from the fit and then calibrate its sets. They are not
@@ -235,7 +235,7 @@ impl Settings {
         if let Some(rates) = &self.input_doubling {
             check_list("input doubling", rates, (inputs, "one per input"), 1e-9..=1e9)?;
             if self.notion != Notion::Hull || self.method != Method::Program {
-                return Err(Error::InputDoubling("it needs the notion hull and a linear program"));
+                return Err(Error::InputDoubling("the notion hull and the method program"));
             }
         }
         self.until.map_or(Ok(()), |until| check_range("until", None, until, &(0.0..=f64::MAX)))

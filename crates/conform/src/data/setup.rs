@@ -321,7 +321,7 @@ impl Setup {
     pub fn new(drive: Arc<dyn Drive>, dynamics: System, settings: Settings) -> Result<Self> {
         settings.validate(dynamics.inputs())?;
         if settings.input_doubling.is_some() && dynamics.linear_system().is_none() {
-            return Err(Error::InputDoubling("the model is not linear"));
+            return Err(Error::InputDoubling("a linear model"));
         }
         if settings.stiction && drive.dry_friction().is_none() {
             return Err(Error::Stiction(

@@ -28,7 +28,8 @@ const DRIFT_WEIGHT: f64 = 1.0 / 16.0;
 /// recording of a suite of its own does, and its values are compared with the model's set as
 /// [`check()`](crate::check()) compares the rows of recordings, whatever the model's notion is.
 /// After it was made, a monitor allocates nothing, and the time for a sample is bounded. Where U
-/// grows with the nominal motion, a window is judged at its end, when its motion is known.
+/// grows with the nominal motion, a window is judged at its end, when its motion is known, and its
+/// samples are kept until then.
 ///
 /// # Guarantee
 ///

@@ -64,8 +64,8 @@ impl Deviation {
         Self { envelope, ..self }
     }
 
-    /// Merges the deviations of one suite that face the same set, whether or not they
-    /// share their nominal motion.
+    /// Merges the deviations of one suite that face the same set, whether or not they share their
+    /// nominal motion.
     pub(crate) fn merge(parts: impl IntoIterator<Item = Self>) -> Vec<Self> {
         let mut merged: Vec<Self> = Vec::new();
         for part in parts {

@@ -28,7 +28,8 @@ const HELD: usize = 24;
 /// Equal parts of a sample over which a disturbance is held that may be any measurable function.
 pub(crate) const PARTS: usize = 2;
 
-/// A linear model over recordings. Its strands are grids: where U is scaled, no points are asked.
+/// A linear model over recordings. Its strands are [places](Place); slices are of grids, which are
+/// the places unless U is scaled, and then no points are asked.
 pub(crate) struct Linear<'a> {
     problem: &'a Problem,
     pub grids: &'a [Grid],

@@ -77,8 +77,9 @@ impl Question<'_> {
         if found.answer != Answer::Undecided || stops.samples == 0 || stops.is_clear(scene) {
             return Ok(found);
         }
+        let sets = &*problem.sets_along(&tube.sets, case)?;
         let search = StopSearch {
-            approach: Approach { problem, case, sets: &tube.sets, body, scene },
+            approach: Approach { problem, case, sets, body, scene },
             rule,
             path: Path::through(&found.reach.times, &Motion::of_reach(&found.reach).middle()),
         };

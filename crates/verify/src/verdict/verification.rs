@@ -131,7 +131,8 @@ impl Question<'_> {
         let closest = if proved || !is_open {
             None
         } else {
-            let approach = Approach { problem, case, sets: &tube.sets, body, scene };
+            let sets = &*problem.sets_along(&tube.sets, case)?;
+            let approach = Approach { problem, case, sets, body, scene };
             let open = clearances.iter().filter(|pair| pair.distance <= scene.clearance);
             let found = open.filter_map(|pair| approach.closest(pair));
             found.min_by(|a, b| a.distance.total_cmp(&b.distance))

@@ -93,10 +93,11 @@ pub(crate) struct SetArguments {
         long,
         hide_short_help = true,
         help_heading = "Sets",
-        value_name = "A,A,..",
+        value_name = "A,..",
+        value_delimiter = ',',
         allow_hyphen_values = true
     )]
-    pub input_doubling: Option<String>,
+    pub input_doubling: Option<Vec<f64>>,
     /// First state of the nominal motions
     #[arg(
         long, hide_short_help = true,
@@ -174,24 +175,12 @@ impl SetArguments {
                 Some(list) => Some(numbers("--sensor-noise", "", list, joints)?),
                 None => None,
             },
-            input_doubling: match &self.input_doubling {
-                Some(list) => Some(plain_numbers("--input-doubling", list)?),
-                None => None,
-            },
+            input_doubling: self.input_doubling.clone(),
             nominal: self.nominal,
             calibrate: self.calibrate.clone(),
             ..usual
         })
     }
-}
-
-/// Parses a list of numbers.
-fn plain_numbers(option: &'static str, list: &str) -> Result<Vec<f64>> {
-    let wrong = |text: &str| {
-        let problem = format!("{option}: \"{text}\" is not a number; give one per joint");
-        Error::setting(problem)
-    };
-    list.split(',').map(|text| text.trim().parse().map_err(|_| wrong(text))).collect()
 }
 
 /// Parses one number per state: 2n numbers, or 2 that stand for all positions and all velocities.
