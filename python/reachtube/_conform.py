@@ -46,7 +46,7 @@ def conform(
     noise: Literal["none", "fitted"] | npt.ArrayLike = "none",
     sensor_noise: npt.ArrayLike | None = None,
     input_doubling: npt.ArrayLike | None = None,
-    nominal: Literal["mean", "own"] = "mean",
+    nominal: Literal["mean", "own", "past"] = "mean",
     equations: Literal["model", "robot", "velocity", "decaying", "held"] = "model",
     calibrate: Sequence[str] = (),
     method: Literal["program", "bisection"] = "program",
@@ -108,7 +108,8 @@ def conform(
         Accelerations of the nominal motion, one per joint, rad/s², at which U is twice what it is
         at rest; U is the same along every motion if they are not given.
     nominal
-        Where nominal motions start: at the mean of a suite's first states, or at each run's own.
+        Where nominal motions start: at the mean of a suite's first states, at each run's own, or
+        where the samples before a window of a log tell that it starts.
     equations
         Whose equations of motion nominal motions satisfy: the model's, or the robot's own, which
         leaves to U what the robot itself does not explain and needs a linear model. ``"velocity"``,

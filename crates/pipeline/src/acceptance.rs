@@ -56,8 +56,7 @@ impl Built {
         let preparation = model.preparation.as_ref();
         let is_repeated = preparation.is_some_and(|done| done.torque == Torque::Compensated);
         let has_allowance = !self.answer.found.allowance.is_empty();
-        let growth = |left: &LeftOut| left.gauge.unwrap_or(f64::INFINITY);
-        let factor = model.left_out.iter().map(growth).fold(1.0, f64::max);
+        let factor = model.left_out.iter().map(LeftOut::growth).fold(1.0, f64::max);
         let is_asked = !is_repeated && !has_allowance;
         (is_asked && factor > self.largest_growth()).then_some(factor)
     }

@@ -3,12 +3,13 @@
 //! The smallest sets enclose what was recorded and nothing more. Each motion is left out in turn,
 //! and the sets of the others say how far it leaves them. If that is half again what is accepted of
 //! motions that are held out, or more, radii are added to the sets, before the held-out motions are
-//! looked at: the least factor of the input's error that covers all motions that were left out, and
-//! that one more motion needs with a probability of 5 % at most, if motions need factors of one
-//! normal distribution. From what is accepted to half again that, a part of these radii is added
+//! looked at: the least factor of X0, and then of the input's error, that covers all motions that
+//! were left out, and that one more motion exceeds with a probability of 5 % at most, if motions
+//! need factors of one normal distribution. From what is accepted to half again that, a part of these radii is added
 //! that grows from none to all, so that a sample more or less cannot make the sets jump.
 
 use reachtube_conform::Answer;
+use reachtube_conform::next_motion::LeftOut;
 use reachtube_finding::Finding;
 
 use crate::carried_over::{Unseen, unseen};
@@ -115,10 +116,10 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     let rows: usize = left_out().map(|left| left.rows).sum();
     let outside: usize = left_out().filter_map(|left| left.outside).sum();
     let part = outside as f64 / rows.max(1) as f64;
-    let growth = left_out().map(|left| left.gauge.unwrap_or(f64::INFINITY)).fold(1.0, f64::max);
+    let growth = left_out().map(LeftOut::growth).fold(1.0, f64::max);
     let leave = format!("{:.1} % of the rows leave the sets of the others", 100.0 * part);
     let grow = match growth.is_finite() {
-        true => format!("one needs {growth:.1} times these sets"),
+        true => format!("one needs sets {growth:.1} times as wide"),
         false => "no factor of these sets encloses one".into(),
     };
     let leave = format!("of {} motions or parts left out in turn, {leave}, and {grow}", all.len());
@@ -127,20 +128,27 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
         let accepted = format!("at most {} % and {} are accepted", 100.0 * most[0], most[1]);
         return (Vec::new(), format!("{leave}; {accepted}"), None);
     }
-    let factors: Option<Vec<f64>> = all.iter().map(|unseen| unseen.factor).collect();
+    let factors: Option<Vec<[f64; 2]>> = all.iter().map(|unseen| unseen.factors).collect();
     let Some((factors, needed)) = factors.zip(answer.found.allowance_needed.as_ref()) else {
-        let without = all.iter().find(|unseen| unseen.factor.is_none());
+        let without = all.iter().find(|unseen| unseen.factors.is_none());
         let finding = without.map(|unseen| not_enclosed(&unseen.left_out));
         return (Vec::new(), format!("{leave}; no allowance encloses them"), finding);
     };
-    let factor = upper_bound(&factors);
-    let radius = |radius: &f64| rounded_up(share * factor * radius, 3);
-    let allowance = needed.shape.iter().map(radius).collect();
-    let largest = factors.iter().copied().fold(0.0, f64::max);
+    let of = |part: usize| factors.iter().map(|factors| factors[part]).collect::<Vec<f64>>();
+    let [initial, input] = [0, 1].map(|part| upper_bound(&of(part)));
+    let states = 2 * answer.model.signals.parts.len();
+    let (of_start, of_input) = needed.shape.split_at(states);
+    let start = of_start.iter().map(|radius| initial * radius);
+    let radii = start.chain(of_input.iter().map(|radius| input * radius));
+    let allowance = radii.map(|radius| rounded_up(share * radius, 3)).collect();
+    let largest = of(1).into_iter().fold(0.0, f64::max);
     let mut reason = format!(
-        "{leave}; they need up to {largest:.2} times the error of the input, and {factor:.2} times \
+        "{leave}; they need up to {largest:.2} times the error of the input, and {input:.2} times \
          is the bound at 95 % for one more"
     );
+    if initial > 0.0 {
+        reason += &format!("; their starts ask X0 wider by {:.0} %", 100.0 * initial);
+    }
     if share < 1.0 {
         reason += &format!(
             "; {:.0} % of that is added, as the limits are exceeded by less than half",
@@ -189,7 +197,10 @@ mod tests {
                         + error * (9.0 * at(t)).sin()
                 };
                 let torques = times.iter().map(torque).collect();
+                // What the samples before tell of the start is off by a little.
+                let told = [at(&0.0).sin() + 0.1 * error, 2.0 * at(&0.0).cos() - 0.1 * error, 0.0];
                 let run = Run::new(1, times.clone(), states, torques).unwrap();
+                let run = Run { before: told.to_vec(), ..run };
                 let suite = format!("{name} {window}");
                 runs.push(&suite, Some(&suite), Some(name), run);
             }
@@ -197,11 +208,11 @@ mod tests {
         runs
     }
 
-    fn answer(robot: &Robot, motions: &[(&str, f64)]) -> Answer {
+    fn answer(robot: &Robot, nominal: NominalStart, motions: &[(&str, f64)]) -> Answer {
         let settings = Settings {
             noise: Noise::Fitted,
             sensor_noise: Some(vec![1e-6; 2]),
-            nominal: NominalStart::Own,
+            nominal,
             ..Settings::default()
         };
         let arm =
@@ -232,9 +243,9 @@ mod tests {
 
     #[test]
     fn a_motion_that_no_allowance_encloses_is_named() {
-        let answer = answer(&pendulum(), &[("a", 0.1), ("b", 0.2), ("c", 0.3)]);
+        let answer = answer(&pendulum(), NominalStart::Own, &[("a", 0.1), ("b", 0.2), ("c", 0.3)]);
         let mut left_out = unseen(&answer);
-        left_out[1].factor = None;
+        left_out[1].factors = None;
         let (allowance, reason, finding) = asked(&answer, &left_out, [0.0, f64::INFINITY]);
         assert!(allowance.is_empty() && reason.ends_with("no allowance encloses them"), "{reason}");
         let finding = finding.unwrap();
@@ -249,28 +260,34 @@ mod tests {
     fn with_the_allowance_the_sets_of_the_others_enclose_each_motion() {
         let robot = pendulum();
         let all = [("a", 0.1), ("b", 0.2), ("c", 0.3)];
-        let asked = |most: f64| {
-            let answer = answer(&robot, &all);
-            asked(&answer, &unseen(&answer), [most, f64::INFINITY])
-        };
-        let (allowance, reason, finding) = asked(0.0);
-        assert_eq!(finding, None);
-        assert_eq!(allowance[..2], [0.0; 2], "the noise limits X0");
-        assert!(allowance[2] > 0.01, "{allowance:?}, {reason}");
-        let mut outside = 0;
-        for left_out in 0..all.len() {
-            let others: Vec<_> = (0..3).filter(|at| *at != left_out).map(|at| all[at]).collect();
-            let own = || windows(&robot, &all[left_out..=left_out]);
-            let smallest = answer(&robot, &others);
-            outside += usize::from(!check(&smallest.model, own()).holds());
-            let wider = smallest.widened(allowance.clone()).unwrap();
-            assert!(wider.holds());
-            let check = check(&wider.model, own());
-            assert!(check.holds(), "{}: {:?}", all[left_out].0, check.verdict.violations);
+        for nominal in [NominalStart::Own, NominalStart::Past] {
+            let asked = |most: f64| {
+                let answer = answer(&robot, nominal, &all);
+                asked(&answer, &unseen(&answer), [most, f64::INFINITY])
+            };
+            let (allowance, reason, finding) = asked(0.0);
+            assert_eq!(finding, None);
+            let is_limited = nominal == NominalStart::Own;
+            assert!(allowance[..2].iter().all(|radius| (*radius == 0.0) == is_limited));
+            assert_eq!(reason.contains("X0 wider by"), !is_limited, "{reason}");
+            assert!(allowance[2] > 0.01, "{allowance:?}, {reason}");
+            let mut outside = 0;
+            for left_out in 0..all.len() {
+                let others: Vec<_> =
+                    (0..3).filter(|at| *at != left_out).map(|at| all[at]).collect();
+                let own = || windows(&robot, &all[left_out..=left_out]);
+                let smallest = answer(&robot, nominal, &others);
+                outside += usize::from(!check(&smallest.model, own()).holds());
+                let wider = smallest.widened(allowance.clone()).unwrap();
+                assert!(wider.holds());
+                let check = check(&wider.model, own());
+                assert!(check.holds(), "{}: {:?}", all[left_out].0, check.verdict.violations);
+            }
+            assert!(outside > 0, "without the allowance some motion leaves the sets");
+            assert!(asked(1.0).0.is_empty(), "all rows may leave the sets");
         }
-        assert!(outside > 0, "without the allowance some motion leaves the sets");
-        assert!(asked(1.0).0.is_empty(), "all rows may leave the sets");
-        let wrong = answer(&robot, &all).widened(vec![0.0; 2]).unwrap_err().to_string();
+        let own = answer(&robot, NominalStart::Own, &all);
+        let wrong = own.widened(vec![0.0; 2]).unwrap_err().to_string();
         assert!(wrong.contains("allowance"), "{wrong}");
     }
 }

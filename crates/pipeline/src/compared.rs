@@ -28,8 +28,8 @@ pub struct HeldOut {
     pub rows: usize,
     /// How many of them lie outside the reachable set.
     pub outside: usize,
-    /// The factor by which the set of each joint would have to grow where it is left furthest, n;
-    /// 1 where nothing lies outside.
+    /// The factor by which the set of each joint at the horizon would have to become wider, n; 1
+    /// where nothing lies outside.
     #[serde(skip)]
     pub growth: Vec<f64>,
     /// Number of motions that are as long as a window; `None` where a motion was held out in part
@@ -172,17 +172,14 @@ impl HeldOut {
     }
 }
 
-/// Returns the factor by which the sets of each joint would have to grow about their centres.
+/// Returns the factor by which the set of each joint would have to become wider.
 fn growth(check: &Check, joints: usize) -> Vec<f64> {
-    let mut growth = vec![1.0f64; joints];
-    for worst in &check.worst_by_state {
-        let factor = 1.0 + worst.excess / worst.radius.max(f64::MIN_POSITIVE);
-        let own = &mut growth[worst.state.part];
-        *own = own.max(factor);
+    match &check.growth {
+        None if check.holds() => vec![1.0; joints],
+        // No factor encloses what follows a nominal motion that ran away.
+        None => vec![f64::INFINITY; joints],
+        Some(growth) => growth.parts.iter().map(|own| own.unwrap_or(f64::INFINITY)).collect(),
     }
-    // No factor encloses what follows a nominal motion that ran away.
-    check.verdict.lost.iter().for_each(|lost| growth[lost.state.part] = f64::INFINITY);
-    growth
 }
 
 /// Returns the windows that `first` names and others, evenly spread; none where no recording is as

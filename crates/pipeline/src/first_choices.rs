@@ -51,7 +51,7 @@ pub(crate) fn first_choices<'a, 'b: 'a>(
     chooser.choose("sensor-noise", value, reason);
     chooser.choices.sensor_noise = Some(sensor_noise.clone());
     let equations = given.equations.unwrap_or(Equations::Robot);
-    let nominal = if is_filtered { NominalStart::Own } else { NominalStart::Mean };
+    let nominal = if is_filtered { NominalStart::Past } else { NominalStart::Mean };
     let robot = robot.clone();
     let (allowance, fit, progress) = (given.allowance, None, chooser.progress);
     let trial = Trial {
@@ -63,7 +63,6 @@ pub(crate) fn first_choices<'a, 'b: 'a>(
         nominal,
         input_doubling: None,
         allowance,
-        from_past: false,
         largest_outside: chooser.choices.largest_outside(),
         largest_growth: chooser.choices.largest_growth.unwrap_or(LARGEST_GROWTH),
         folds: &[],

@@ -9,8 +9,8 @@ pub(crate) struct Foretold {
     pub half_widths: Vec<f64>,
     /// The displacement of each joint, n, rad (m).
     displacements: Vec<f64>,
-    /// The factor by which the sets of the other motions enclose each motion; at least 1, and
-    /// infinite if none does.
+    /// The factor by which the sets of the other motions become wider that enclose each motion; at
+    /// least 1, and infinite if none do.
     factor: f64,
 }
 
@@ -18,11 +18,10 @@ impl Foretold {
     /// Takes the sets of an answer before they were widened, and motions that were left out.
     pub(crate) fn new(answer: &Answer, left_out: &[Unseen]) -> Self {
         let joints = &answer.found.usefulness.parts;
-        let gauge = |unseen: &Unseen| unseen.left_out.gauge.unwrap_or(f64::INFINITY);
         Self {
             half_widths: joints.iter().map(|own| own.half_width.unwrap_or(f64::INFINITY)).collect(),
             displacements: joints.iter().map(|own| own.displacement).collect(),
-            factor: left_out.iter().map(gauge).fold(1.0, f64::max),
+            factor: left_out.iter().map(|own| own.left_out.growth()).fold(1.0, f64::max),
         }
     }
 

@@ -107,8 +107,9 @@ impl LiveMonitor {
         log.take(time, [q, qd, torque])?;
         leaves.clear();
         alarms.clear();
-        while let Some(sample) = log.next() {
-            let n = q.len();
+        let n = q.len();
+        while let Some((sample, told)) = log.next() {
+            monitor.tell(told);
             let (state, torque) = (sample.state(), sample.torque());
             let left = monitor.push(sample.time, &state[..n], &state[n..], torque)?;
             let room = leaves.capacity() - leaves.len();
@@ -146,7 +147,7 @@ fn live_run(log: &mut LiveLog, run: &Run) -> Result<Run, String> {
     for (k, &time) in run.times.iter().enumerate() {
         let parts = [run.q(k), run.qd(k), run.torque(k)];
         log.take(time, parts).map_err(|problem| problem.to_string())?;
-        while let Some(sample) = log.next() {
+        while let Some((sample, _)) = log.next() {
             times.push(sample.time);
             states.extend_from_slice(sample.state());
             torques.extend_from_slice(sample.torque());

@@ -4,6 +4,7 @@ use crate::code::Code;
 use reachtube_finding::{Finding, FrontEnd, Summary};
 
 use crate::build::Built;
+use crate::joint_row::JointRow;
 use crate::without_model::WithoutModel;
 
 /// The name of what follows for new motions.
@@ -76,6 +77,7 @@ impl Built {
         if let Some(without) = &self.without_model {
             without.add_to(&mut summary.table);
         }
+        summary.facts.extend(self.spread().map(|spread| ("in single windows".into(), spread)));
         let is_said = |other: &&Finding| {
             Some(*other) == found || MENDED.iter().any(|code| other.code == *code)
         };
@@ -141,6 +143,19 @@ impl Built {
     pub fn allowance_words(&self) -> Option<String> {
         let choice = self.made.iter().find(|choice| choice.key == "allowance")?;
         (!self.answer.model.allowance.is_empty()).then(|| choice.value.clone())
+    }
+
+    /// Returns how far the sets of single windows differ where U grows with the nominal motion: those
+    /// of the joint whose set is the widest in some window.
+    fn spread(&self) -> Option<String> {
+        self.choices.input_doubling.as_ref().filter(|doubling| !doubling.is_empty())?;
+        let of = |(joint, row): (usize, JointRow)| {
+            let range = self.answer.found.tube.range_at_end(joint);
+            (range.map(|radius| radius / row.displacement), row.name)
+        };
+        let all = self.joints().into_iter().enumerate().map(of);
+        let ([least, most], name) = all.max_by(|(a, _), (b, _)| a[1].total_cmp(&b[1]))?;
+        Some(format!("the set of {name} is {} to {} of its motion", percent(least), percent(most)))
     }
 
     /// Returns how the widest set grows up to the horizon, and a little beyond.

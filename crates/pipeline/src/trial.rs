@@ -1,13 +1,11 @@
 //! A conformance over windows, as every step of the pipeline uses it.
 
-use std::collections::BTreeMap;
-
 use reachtube_abstraction::ExpansionPoint;
 use reachtube_arm::{ArmSettings, Basis, Equations};
 use reachtube_conform::settings::NominalStart;
 use reachtube_conform::{Answer, FitSettings, Job, Noise, Problem, Progress, Settings};
 use reachtube_files::hex;
-use reachtube_recordings::{MemoryRuns, ReadOptions, RunEntry, RunSource, Torque};
+use reachtube_recordings::{MemoryRuns, RunSource, Torque};
 use reachtube_robot::Robot;
 use reachtube_scalar::number::counted;
 use sha2::{Digest, Sha256};
@@ -34,9 +32,6 @@ pub(crate) struct Trial<'a> {
     /// The accelerations of nominal motions at which U is twice what it is at rest, n, rad/s², if
     /// it grows with them.
     pub input_doubling: Option<Vec<f64>>,
-    /// Whether they start where the samples up to the start alone tell, and X0 has the error of
-    /// that.
-    pub from_past: bool,
     /// Radii added to X0 and U, 3n, if it is given.
     pub allowance: Option<Vec<f64>>,
     /// The part of the rows of motions left out that may leave the sets without an allowance, and
@@ -137,7 +132,7 @@ impl Trial<'_> {
             noise: Noise::Fitted,
             sensor_noise: Some(self.sensor_noise.clone()),
             input_doubling: self.input_doubling.clone(),
-            nominal: if self.from_past { NominalStart::Mean } else { self.nominal },
+            nominal: self.nominal,
             ..Settings::default()
         };
         let arm = ArmSettings {
@@ -149,19 +144,7 @@ impl Trial<'_> {
             Torque::Link => self.robot.without_motors(),
             Torque::Motor | Torque::Compensated => self.robot.clone(),
         };
-        let mut setup = Basis::from(robot).setup(arm, settings)?;
-        if self.from_past {
-            setup.nominal_starts = known_starts(&windows);
-        }
+        let setup = Basis::from(robot).setup(arm, settings)?;
         Ok(Job::new(setup, windows).fit(self.fit.clone()))
     }
-}
-
-/// Returns the states at the start of windows, as far as the samples up to it alone tell.
-fn known_starts(windows: &MemoryRuns) -> BTreeMap<String, Vec<f64>> {
-    let known = |(index, entry): (usize, &RunEntry)| {
-        let run = windows.read(index, &ReadOptions::default()).ok()?;
-        Some((entry.suite.clone()?, run.before.get(..2 * run.joints)?.to_vec()))
-    };
-    windows.runs().iter().enumerate().filter_map(known).collect()
 }

@@ -43,10 +43,6 @@ pub struct WithoutModel {
     /// Part of the rows of the faster half of the motions that lie outside the sets of the slower
     /// half, its allowance included: of the model, and without one. `None` for a single motion.
     pub faster: Option<[f64; 2]>,
-    /// The widest set, as above, where nominal motions start from what the samples up to the start
-    /// tell, which no filter of later ones has changed: of the model, and without one. `None` for
-    /// recordings that count from their start, and if the model is not worth having.
-    pub from_past: Option<[Option<f64>; 2]>,
     /// The part of the rows that may lie outside.
     #[serde(skip)]
     pub(crate) largest_outside: f64,
@@ -84,20 +80,15 @@ impl WithoutModel {
         let windows = answer.model.data.run_count();
         let narrower = |joint| without.half_width(joint) / own.half_width(joint);
         let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
-        let mut compared = Self {
+        Ok(Self {
             equations,
             widest: finite(without.widest()),
             widest_of: [without.widest_joint(), windows],
             widest_of_model: finite(own.widest()),
             narrower: (0..own.half_widths.len()).map(narrower).collect(),
             faster: to_faster([trial, &other], recordings, horizon)?,
-            from_past: None,
             largest_outside: trial.largest_outside,
-        };
-        if compared.is_model_better() {
-            compared.from_past = from_past([trial, &other], recordings, horizon)?;
-        }
-        Ok(compared)
+        })
     }
 
     /// Returns whether the model is worth having: its sets are narrower than without one, and of
@@ -160,11 +151,7 @@ impl WithoutModel {
             gain if gain.is_finite() => format!("sets {} times as wide, the", significant(gain, 2)),
             _ => "the".into(),
         };
-        let from_past = self.from_past.map_or_else(String::new, |widest| {
-            let [own, without] = widest.map(percent);
-            format!("; starting from the past alone, the widest {without} (with it {own})")
-        });
-        format!("{times} widest {without} (with it {own}){faster}{from_past}")
+        format!("{times} widest {without} (with it {own}){faster}")
     }
 }
 
@@ -205,27 +192,6 @@ fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result
         part => Ok(part.unwrap_or(1.0)),
     };
     let [own, without] = trials.map(outside);
-    Ok(Some([own?, without?]))
-}
-
-/// Returns the widest sets of some trials where nominal motions start from what the samples up to
-/// the start tell.
-fn from_past(
-    trials: [&Trial; 2],
-    recordings: &Prepared,
-    horizon: f64,
-) -> Result<Option<[Option<f64>; 2]>> {
-    if recordings.from_start {
-        return Ok(None);
-    }
-    let widest = |trial: &Trial| {
-        let trial = Trial { from_past: true, allowance: None, fit: None, ..trial.clone() };
-        match Widened::of_some(&trial, recordings, horizon, MOST_WINDOWS) {
-            Err(error) if trial.progress.is_cancelled() => Err(error),
-            found => Ok(found.ok().map(|found| found.foretold.widest()).filter(|w| w.is_finite())),
-        }
-    };
-    let [own, without] = trials.map(widest);
     Ok(Some([own?, without?]))
 }
 
@@ -279,7 +245,6 @@ mod tests {
             widest_of_model,
             narrower,
             faster,
-            from_past: None,
             largest_outside: 0.01,
         }
     }
@@ -301,9 +266,6 @@ mod tests {
         let slower = compared(vec![2.0, 2.0], Some([0.4, 0.1]));
         assert!(!slower.is_model_better());
         assert!(slower.why_better().starts_with("of faster motions 40 % of the rows leave"));
-        let past = WithoutModel { from_past: Some([Some(0.8), None]), ..compared(vec![2.0], None) };
-        let words = "; starting from the past alone, the widest without bound (with it 80 %)";
-        assert!(past.words().ends_with(words), "{}", past.words());
         let lost = WithoutModel { widest: None, ..compared(vec![f64::INFINITY], None) };
         assert!(lost.is_model_better());
         assert_eq!(lost.words(), "the widest without bound (with it 30 %)");

@@ -22,4 +22,5 @@ mod sampled_states;
 mod schunk;
 mod stiction;
 mod synthetic;
+mod told_starts;
 mod warmth;

@@ -227,16 +227,21 @@ fn x0_and_u_grow_one_after_the_other_until_they_enclose_a_motion() {
         let alone = conform_all(&fit);
         let model = Model::new(&fit, &alone);
         let own = read(&two_joints(), folder.path(), &[&left.motion], &model.settings);
-        let holds = |factors: [f64; 2]| {
+        let tube = |factors: [f64; 2]| {
             let mut sets = alone.sets.clone();
             for (set, factor) in
                 [&mut sets.initial_set, &mut sets.input_set].into_iter().zip(factors)
             {
                 set.radius.iter_mut().for_each(|radius| *radius *= factor);
             }
-            check(&model, &own, &Tube::new(&own, sets).unwrap()).unwrap().verdict.conformant
+            Tube::new(&own, sets).unwrap()
         };
+        let holds = |factors| check(&model, &own, &tube(factors)).unwrap().verdict.conformant;
         let [initial, input] = [left.initial_gauge, left.input_gauge].map(Option::unwrap);
+        let ends = |factors| [0, 1].map(|joint| tube(factors).range_at_end(joint)[1]);
+        let [before, after] = [[1.0; 2], [initial, input]].map(ends);
+        let wider = (after[0] / before[0]).max(after[1] / before[1]);
+        assert!((left.wider.unwrap() / wider - 1.0).abs() < 1e-9, "{left:?} for {wider}");
         assert!(holds([initial, input].map(|factor| factor * (1.0 + 1e-4))), "{left:?}");
         if initial > 1.001 {
             of_starts += 1;

@@ -1,9 +1,10 @@
 //! The settings of a conformance.
 
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 use reachtube_reach::Disturbance;
-use reachtube_recordings::GapLimit;
+use reachtube_recordings::{Defect, GapLimit, Run};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +105,37 @@ pub enum NominalStart {
     /// At the run's own first state, which is known up to the noise of the sensors: X0 is at most
     /// that large.
     Own,
+    /// Where the samples up to the run's first one tell that it starts ([`Run::before`]), as a
+    /// motion's start is known while it goes on. X0 has the error of that.
+    Past,
+}
+
+impl NominalStart {
+    /// Returns whether each run has its own.
+    pub(crate) fn is_of_run(self) -> bool {
+        self != Self::Mean
+    }
+
+    /// Returns whether the noise of the sensors limits X0, which then cannot grow for a motion.
+    pub(crate) fn is_measured(self) -> bool {
+        self == Self::Own
+    }
+
+    /// Checks that the start of a run at `path` is known.
+    ///
+    /// # Errors
+    ///
+    /// A run without samples before it, where these tell its start.
+    pub(crate) fn check(self, path: &Path, run: &Run) -> Result<(), Vec<Defect>> {
+        if self != Self::Past || run.before.len() >= run.dimension() {
+            return Ok(());
+        }
+        let problem = "the model's motions start where the samples before them tell, and there are \
+                       none before this recording";
+        let remedy = "give logs with torques of motors or links as they were recorded, of which \
+                      windows are cut";
+        Err(vec![Defect::new(path, None, problem, remedy)])
+    }
 }
 
 /// The measurement noise: a set V of the measured state, centred at 0, that is added to the
@@ -207,7 +239,7 @@ pub struct Settings {
 
 impl Settings {
     pub(crate) fn are_limited_by_noise(&self) -> bool {
-        self.noise == Noise::Fitted || self.nominal == NominalStart::Own
+        self.noise == Noise::Fitted || self.nominal.is_measured()
     }
 
     /// Checks sizes and signs for a model of `inputs` inputs.

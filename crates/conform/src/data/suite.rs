@@ -115,7 +115,9 @@ impl SuiteReader<'_> {
 
     fn read_run(&self, index: usize) -> Result<(Run, RunInput), Vec<Defect>> {
         let run = self.source.read(index, &self.options)?;
-        let input = self.drive.input(&self.source.run_name(index), &run, None)?;
+        let path = self.source.run_name(index);
+        self.nominal.check(&path, &run)?;
+        let input = self.drive.input(&path, &run, None)?;
         Ok((run, input))
     }
 
@@ -129,7 +131,7 @@ impl SuiteReader<'_> {
         part.envelope.include(index as u32, &run.states);
         let is_first = part.is_empty;
         part.share(Some(SharedInput { run: index as u32, input }), self.shape);
-        if self.keep_all || self.nominal == NominalStart::Own || part.shared.is_none() {
+        if self.keep_all || self.nominal.is_of_run() || part.shared.is_none() {
             self.kept.keep(index, run);
         } else if is_first {
             part.first = Some((index, run));
@@ -150,7 +152,7 @@ impl SuiteReader<'_> {
         let sample: BTreeSet<usize> = sampled(&runs).map(|run| run.index).collect();
         let others = runs.iter_mut().filter(|run| !sample.contains(&run.index));
         others.for_each(|run| run.marks.clear());
-        let own_start = self.nominal == NominalStart::Own;
+        let own_start = self.nominal.is_of_run();
         Ok(Suite {
             entry: entry.clone(),
             nominal_start: match self.nominal_starts.get(&entry.name) {

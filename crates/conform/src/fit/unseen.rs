@@ -2,7 +2,6 @@
 
 use std::slice::from_ref;
 
-use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
 use crate::fit::evaluation::FitTask;
 use crate::fit::record::UnseenMotion;
@@ -34,10 +33,12 @@ impl Unseen<'_> {
         let smallest = whole.smallest_from(&model, &others, &mut rows)?;
         let cost = whole.smallest_from(&model, &all, &mut rows)?.cost_by_time;
         let program = whole.program(&model, &own);
-        let input_only = whole.settings.nominal == NominalStart::Own;
+        let input_only = whole.settings.nominal.is_measured();
         let growth = program.growth(&smallest.sets, input_only);
-        let [initial_growth, input_growth] =
-            Program::growth_in_turn(from_ref(&program), &smallest.sets, input_only);
+        let in_turn =
+            Program::growth_in_turn(from_ref(&program), &smallest.sets, input_only, |_| true);
+        let ([initial_growth, input_growth], wider) =
+            (in_turn, program.widest(&smallest.sets, in_turn));
         let of_track = |t: &usize| {
             let own = whole.program(&model, &[*t]);
             [own.outside(&smallest.sets), own.rows() / 2]
@@ -53,6 +54,7 @@ impl Unseen<'_> {
             growth,
             initial_growth,
             input_growth,
+            wider,
             grown_cost: growth.map(|growth| program.cost(&smallest.sets.grown(growth, input_only))),
             outside: Some(outside),
             rows,

@@ -9,7 +9,6 @@ use sha2::{Digest, Sha256};
 
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
-use crate::data::settings::NominalStart;
 use crate::data::suite::Suite;
 use crate::data::summary::RunSummary;
 
@@ -132,7 +131,7 @@ impl DataRecord {
             samples: run.samples,
             duration: run.duration,
         };
-        let has_start = problem.settings().nominal == NominalStart::Mean;
+        let has_start = !problem.settings().nominal.is_of_run();
         let Recordings { suites, root, are_listed, skipped, .. } = problem.recordings();
         let suite = |suite: &Suite| SuiteRecord {
             name: suite.entry.name.clone(),

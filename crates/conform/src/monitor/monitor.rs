@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::data::live_input::LiveInput;
+use crate::data::settings::NominalStart;
 use crate::data::setup::Setup;
 use crate::error::{Error, Result};
 use crate::model::file::Model;
@@ -58,6 +59,10 @@ struct Judge {
     windows: Vec<Window>,
     /// Number of samples since the beginning.
     count: u64,
+    /// Whether windows start where the samples before them tell, and what these tell, 2n; empty if
+    /// it is not known.
+    is_told: bool,
+    told: Vec<f64>,
     /// The input of the sample, m, and of the one before.
     input: Vec<f64>,
     before: Vec<f64>,
@@ -126,6 +131,8 @@ impl Monitor {
             every: every as u64,
             windows,
             count: 0,
+            is_told: settings.nominal == NominalStart::Past,
+            told: Vec::with_capacity(2 * n),
             input: vec![0.0; n],
             before: vec![0.0; n],
             leaves: Vec::new(),
@@ -152,6 +159,9 @@ impl Monitor {
         qd: &[f64],
         torque: &[f64],
     ) -> Result<&[Leave], SampleError> {
+        if self.judge.is_told && self.judge.told.is_empty() {
+            return Err(SampleError::NotTold);
+        }
         self.even.take(time, [q, qd, torque])?;
         let Self { even, input, judge, .. } = self;
         judge.leaves.clear();
@@ -161,6 +171,14 @@ impl Monitor {
             judge.take(sample);
         }
         Ok(&self.judge.leaves)
+    }
+
+    /// Takes what the samples up to the next one tell of its state, 2n, rad and rad/s, which a
+    /// window starts from that opens there. Only models need it whose settings have
+    /// [`NominalStart::Past`].
+    pub fn tell(&mut self, state: &[f64]) {
+        self.judge.told.clear();
+        self.judge.told.extend_from_slice(state);
     }
 
     /// Begins anew, as at the end of a recording: the next sample may have any time. The totals
@@ -197,6 +215,7 @@ impl Monitor {
     /// Learns from the samples that follow, without windows.
     pub(crate) fn begin_lesson(&mut self, shape: Shape, task: Task) -> Result<()> {
         self.judge.windows.clear();
+        self.judge.is_told = false;
         self.begin_task(shape, task)
     }
 
@@ -274,7 +293,8 @@ impl Judge {
         }
         if self.count.is_multiple_of(self.every) {
             let free = windows.iter_mut().find(|window| window.sample.is_none());
-            free.into_iter().for_each(|window| window.open(sample));
+            let start = if self.is_told { &self.told[..] } else { sample.state() };
+            free.into_iter().for_each(|window| window.open(sample, start));
         }
         self.count += 1;
         progress.begin();

@@ -78,10 +78,10 @@ impl Window {
         }
     }
 
-    pub(crate) fn open(&mut self, sample: &Sample) {
+    pub(crate) fn open(&mut self, sample: &Sample, start: &[f64]) {
         (self.sample, self.begin, self.is_left) = (Some(0), sample.time, false);
-        self.nominal.restart(sample.state());
-        self.corrected[0].copy_from_slice(sample.state());
+        self.nominal.restart(start);
+        self.corrected[0].copy_from_slice(start);
         self.runs_away = false;
         self.used.fill(0.0);
         self.kept.clear();

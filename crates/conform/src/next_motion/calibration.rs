@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::claim::look::Look;
 use crate::claim::notion::{claim, plant};
 use crate::data::problem::Problem;
-use crate::data::settings::NominalStart;
 use crate::error::{Error, Result};
 use crate::next_motion::left_out::LeftOutMotions;
 use crate::next_motion::motions::Motions;
@@ -87,7 +86,7 @@ pub(crate) fn calibrate(
     let fit = problem.with_suites(|suite| !held_out.contains(motions.of_suite(suite)));
     let first = smallest_sets(&fit, &*claim(&fit)?, left_out, how)?;
     let Found { tube: Tube { sets: fitted, .. }, search, left_out, .. } = first;
-    let input_only = problem.settings().nominal == NominalStart::Own;
+    let input_only = problem.settings().nominal.is_measured();
     let linear =
         problem.dynamics().linear_system().map(|_| Program::of_problem(problem)).transpose()?;
     let grown = |factor: f64| fitted.grown(factor, input_only);

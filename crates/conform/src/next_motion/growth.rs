@@ -1,3 +1,5 @@
+use std::slice::from_ref;
+
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -8,7 +10,7 @@ use crate::sets::UncertaintySets;
 
 /// Factors by which each set alone must grow, so that a model encloses recordings that leave its
 /// sets. Not proved: to rounding, with the centres where they are.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Growth {
     /// Factor of all radii of X0, for a linear model. `None` if no factor suffices.
     pub initial_set: Option<f64>,
@@ -16,6 +18,10 @@ pub struct Growth {
     pub input_set: Option<f64>,
     /// Factor of all radii of X0 and U, for a linear model. `None` if no factor suffices.
     pub both_sets: Option<f64>,
+    /// For each part, the factor by which its set of positions at the end becomes wider once X0 and
+    /// then U have grown so that the values of the part are enclosed; of a linear model. `None` if
+    /// no factors suffice.
+    pub parts: Vec<Option<f64>>,
     /// What the radii of V in all positions would have to grow by, rad or m.
     pub noise_position: f64,
     /// What the radii of V in all velocities would have to grow by, rad/s or m/s.
@@ -27,11 +33,19 @@ impl Growth {
     pub(crate) fn new(problem: &Problem, sets: &UncertaintySets, excess: &[f64]) -> Result<Self> {
         let (positions, velocities) = excess.split_at(problem.inputs());
         let largest = |excess: &[f64]| excess.iter().copied().fold(0.0, f64::max);
-        let [initial_set, input_set, both_sets] = match problem.dynamics().linear_system() {
-            None => [None; 3],
-            Some(_) => Program::of_problem(problem)?.growth_factors(sets),
+        let linear = problem.dynamics().linear_system();
+        let program = linear.map(|_| Program::of_problem(problem)).transpose()?;
+        let factors = program.as_ref().map(|program| program.growth_factors(sets));
+        let [initial_set, input_set, both_sets] = factors.unwrap_or([None; 3]);
+        let (n, input_only) = (problem.inputs(), problem.settings().nominal.is_measured());
+        let wider = |program: &Program, part: usize| {
+            let own = |state: usize| state % n == part;
+            let [x, u] = Program::growth_in_turn(from_ref(program), sets, input_only, own);
+            Some(program.wider(sets, part, [x?, u?]))
         };
+        let parts = (0..n).map(|part| program.as_ref().and_then(|program| wider(program, part)));
+        let parts = parts.collect();
         let (noise_position, noise_velocity) = (largest(positions), largest(velocities));
-        Ok(Self { initial_set, input_set, both_sets, noise_position, noise_velocity })
+        Ok(Self { initial_set, input_set, both_sets, parts, noise_position, noise_velocity })
     }
 }

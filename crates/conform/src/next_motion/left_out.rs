@@ -1,7 +1,6 @@
 use rayon::prelude::*;
 
 use crate::data::problem::Problem;
-use crate::data::settings::NominalStart;
 use crate::error::Result;
 use crate::next_motion::allowance::Missing;
 use crate::next_motion::motions::Motions;
@@ -78,6 +77,7 @@ pub(crate) fn leave_each_out(
                     gauge: Some(1.0),
                     initial_gauge: none,
                     input_gauge: none,
+                    wider: none,
                     ..unknown
                 };
                 Ok((left, Some(Missing::new())))
@@ -167,14 +167,16 @@ impl Without<'_> {
             return Ok((unknown, None));
         };
         let sets = others.repaired(&solution.sets);
-        let input_only = self.problem.settings().nominal == NominalStart::Own;
+        let input_only = self.problem.settings().nominal.is_measured();
         let growth = |own: &Program| own.growth(&sets, input_only);
         let growth = own.iter().map(growth).try_fold(1.0, |max: f64, g| g.map(|g| max.max(g)));
         let compared = match self.problem.dynamics().linear_system() {
             Some(_) => {
-                let [initial_gauge, input_gauge] = Program::growth_in_turn(own, &sets, input_only);
+                let in_turn = Program::growth_in_turn(own, &sets, input_only, |_| true);
+                let ([initial_gauge, input_gauge], wider) =
+                    (in_turn, others.widest(&sets, in_turn));
                 let outside = Some(own.iter().map(|own| own.outside(&sets)).sum());
-                LeftOut { outside, gauge: growth, initial_gauge, input_gauge, ..unknown }
+                LeftOut { outside, gauge: growth, initial_gauge, input_gauge, wider, ..unknown }
             }
             None => {
                 let (outside, gauge) = self.outer(&sets, growth.unwrap_or(1.0), input_only)?;

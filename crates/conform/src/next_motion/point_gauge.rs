@@ -3,7 +3,6 @@
 use crate::claim::look::{Look, Near};
 use crate::claim::notion::{claim, plant};
 use crate::data::problem::Problem;
-use crate::data::settings::NominalStart;
 use crate::error::Result;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::without_motion::LeftOut;
@@ -56,7 +55,7 @@ pub(crate) fn leave_points_out(problem: &Problem, motion: &str) -> Result<LeftOu
     let [own, others] = [true, false]
         .map(|own| problem.with_suites(|suite| (motions.of_suite(suite) == motion) == own));
     let sets = smallest_sets_alone(&others, &*claim(&others)?)?.tube.sets;
-    let input_only = problem.settings().nominal == NominalStart::Own;
+    let input_only = problem.settings().nominal.is_measured();
     let rows = Program::of_problem(&own)?.growth(&sets, input_only);
     let grown = |factor: f64| sets.grown(factor, input_only);
     let gauge = rows.map_or(Ok(None), |rows| point_gauge(&own, rows, &grown))?;

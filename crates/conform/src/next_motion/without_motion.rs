@@ -29,12 +29,23 @@ pub struct LeftOut {
     /// once X0 has grown so. `None` if no factor suffices, and for a model that is not linear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input_gauge: Option<f64>,
+    /// The factor, at least 1, by which a set of positions at the end becomes wider, the one that
+    /// does most, once X0 and U have grown so in turn. `None` as above.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wider: Option<f64>,
 }
 
 impl LeftOut {
     /// Makes the record of a motion that was not compared with the sets of the others.
     pub(crate) fn unknown(motion: &str, rows: usize) -> Self {
         Self { motion: motion.into(), rows, ..Self::default() }
+    }
+
+    /// Returns by which factor sets become wider that enclose the motion: [`wider`](Self::wider)
+    /// where it is known, and [`gauge`](Self::gauge) otherwise; infinite if no factor suffices.
+    #[must_use]
+    pub fn growth(&self) -> f64 {
+        self.wider.or(self.gauge).unwrap_or(f64::INFINITY)
     }
 }
 
@@ -48,6 +59,7 @@ impl From<&UnseenMotion> for LeftOut {
             gauge: unseen.growth,
             initial_gauge: unseen.initial_growth,
             input_gauge: unseen.input_growth,
+            wider: unseen.wider,
         }
     }
 }

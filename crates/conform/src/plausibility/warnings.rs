@@ -2,7 +2,6 @@ use reachtube_finding::Finding;
 use reachtube_recordings::State;
 
 use crate::data::problem::Problem;
-use crate::data::settings::NominalStart;
 use crate::data::signals::Signals;
 use crate::error::Result;
 use crate::next_motion::calibration::Calibration;
@@ -123,9 +122,9 @@ fn of_state(
         remark(Code::InitialSetStarts, text);
     }
     let offset = from.max(-to);
-    let allowed = match problem.settings().nominal {
-        NominalStart::Mean => sensor.max(0.05 * range),
-        NominalStart::Own => sensor,
+    let allowed = match problem.settings().nominal.is_measured() {
+        true => sensor,
+        false => sensor.max(0.05 * range),
     };
     if offset > allowed.max(1e-6) {
         remark(Code::InitialSetOffset, format!("{state} {} {unit}", short(offset)));

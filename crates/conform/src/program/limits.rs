@@ -32,11 +32,9 @@ impl Problem {
         };
         Limits {
             noise: (settings.noise == Noise::Fitted).then(radii),
-            start: match settings.nominal {
-                NominalStart::Own => Some(radii()),
-                NominalStart::Mean => {
-                    (limited > 0).then(|| (0..starts.len()).map(of_starts).collect())
-                }
+            start: match settings.nominal.is_measured() {
+                true => Some(radii()),
+                false => (limited > 0).then(|| (0..starts.len()).map(of_starts).collect()),
             },
         }
     }
@@ -44,7 +42,14 @@ impl Problem {
     /// Returns how far the first states of the recordings lie from their nominal start at most, 2n.
     pub(crate) fn farthest_starts(&self) -> Vec<f64> {
         let mut farthest = vec![0.0_f64; self.states()];
+        let is_past = self.settings().nominal == NominalStart::Past;
         for suite in &self.read.recordings.suites {
+            for run in suite.runs.iter().filter(|_| is_past) {
+                let starts = run.start.iter().zip(&run.known);
+                for (far, (start, known)) in farthest.iter_mut().zip(starts) {
+                    *far = far.max((start - known).abs());
+                }
+            }
             let bounds = suite.totals.start_bounds.iter().zip(&suite.nominal_start);
             for (far, (bounds, nominal)) in farthest.iter_mut().zip(bounds) {
                 // Rounding keeps the order, so that no run lies further than one of the bounds.

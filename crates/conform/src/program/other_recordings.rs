@@ -117,38 +117,74 @@ impl Program<'_> {
     /// holds up to rounding; `None` if no factor suffices.
     pub(crate) fn growth_factors(&self, sets: &UncertaintySets) -> [Option<f64>; 3] {
         let (states, all) = (sets.initial_set.dimension(), self.shape.radii());
-        [0..states, states..all, 0..all].map(|part| self.factor(sets, part, |_| true))
+        [0..states, states..all, 0..all].map(|part| self.factor(sets, part, |_, _| true))
     }
 
     /// Returns the factor of the radii of X0 and U, or of U alone, with which every row holds.
     pub(crate) fn growth(&self, sets: &UncertaintySets, input_only: bool) -> Option<f64> {
         let first = if input_only { sets.initial_set.dimension() } else { 0 };
-        self.factor(sets, first..self.shape.radii(), |_| true)
+        self.factor(sets, first..self.shape.radii(), |_, _| true)
     }
 
-    /// Returns the factors of X0 and of U in turn with which the rows of all `programs` hold, up to
-    /// rounding: the factor of the radii of X0 for the rows of first samples, where U has no effect
+    /// Returns the factors of X0 and of U in turn with which the rows of all `programs` hold whose
+    /// state is asked, up to rounding: the factor of the radii of X0 for the rows of first samples, where U has no effect
     /// yet, and then the factor of the radii of U for all other rows; `None` if no factor suffices.
     /// X0 keeps its radii where the noise of the sensors limits it (`input_only`).
     pub(crate) fn growth_in_turn(
         programs: &[Self],
         sets: &UncertaintySets,
         input_only: bool,
+        is_asked: impl Fn(usize) -> bool,
     ) -> [Option<f64>; 2] {
         let states = sets.initial_set.dimension();
         let largest = |factor: &dyn Fn(&Self) -> Option<f64>| {
             let mut factors = programs.iter().map(factor);
             factors.try_fold(1.0, |max: f64, factor| factor.map(|factor| max.max(factor)))
         };
-        if input_only {
-            return [Some(1.0), largest(&|own| own.growth(sets, true))];
-        }
-        let initial = largest(&|own| own.factor(sets, 0..states, |sample| sample == 0));
+        // Where X0 keeps its radii, U must make up for first samples, too.
+        let initial = match input_only {
+            true => Some(1.0),
+            false => largest(&|own| own.factor(sets, 0..states, |k, i| k == 0 && is_asked(i))),
+        };
         let input = initial.and_then(|factor| {
             let grown = sets.with_initial_scaled(factor);
-            largest(&|own| own.factor(&grown, states..own.shape.radii(), |sample| sample > 0))
+            let is_left = |k: usize, i: usize| (input_only || k > 0) && is_asked(i);
+            largest(&|own| own.factor(&grown, states..own.shape.radii(), is_left))
         });
         [initial, input]
+    }
+
+    /// Returns by which factor the set of positions of a part at the last samples becomes wider, if
+    /// the radii of X0 and of U grow by two factors; the largest factor of several samples.
+    pub(crate) fn wider(
+        &self,
+        sets: &UncertaintySets,
+        part: usize,
+        [initial, input]: [f64; 2],
+    ) -> f64 {
+        let radius = self.unknowns(sets).radius;
+        let (states, all) = (sets.initial_set.dimension(), self.shape.radii());
+        let wider = |b: usize| {
+            let last = self.blocks[b].envelope.len().checked_sub(1)?;
+            let gains = self.row(b, last, part).1;
+            let [x, u] = [0..states, states..all].map(|radii| gains.dot_of(radii, &radius));
+            let width = x + u + sets.noise_radius(part);
+            (width > NEGLIGIBLE_RADIUS)
+                .then(|| 1.0 + ((initial - 1.0) * x + (input - 1.0) * u) / width)
+        };
+        (0..self.blocks.len()).filter_map(wider).fold(1.0, f64::max)
+    }
+
+    /// Returns by which factor the set of positions of the part becomes wider that does most, if
+    /// factors of X0 and of U are known.
+    pub(crate) fn widest(
+        &self,
+        sets: &UncertaintySets,
+        [initial, input]: [Option<f64>; 2],
+    ) -> Option<f64> {
+        let factors = [initial?, input?];
+        let parts = 0..self.shape.inputs;
+        Some(parts.map(|part| self.wider(sets, part, factors)).fold(1.0, f64::max))
     }
 
     /// Returns whether a row of recordings without which the sets were found leaves them by more
@@ -158,20 +194,20 @@ impl Program<'_> {
         row.excess > SAME_STATE && self.is_violated(row)
     }
 
-    /// Returns the factor of given radii with which the rows of given samples hold, up to rounding;
-    /// `None` if no factor suffices.
+    /// Returns the factor of given radii with which the rows of given samples and states hold, up to
+    /// rounding; `None` if no factor suffices.
     fn factor(
         &self,
         sets: &UncertaintySets,
         part: Range<usize>,
-        is_asked: impl Fn(usize) -> bool,
+        is_asked: impl Fn(usize, usize) -> bool,
     ) -> Option<f64> {
         let unknowns = self.unknowns(sets);
         let needed = |row: Reached| {
             let (b, k, i, _) = row.index;
             1.0 + row.excess / self.row(b, k, i).1.dot_of(part.clone(), &unknowns.radius)
         };
-        let rows = self.all_reached(&unknowns).filter(|row| is_asked(row.index.1));
+        let rows = self.all_reached(&unknowns).filter(|row| is_asked(row.index.1, row.index.2));
         let factor = rows.filter(|row| self.is_missed(row)).map(needed).fold(1.0, f64::max);
         factor.is_finite().then_some(factor)
     }

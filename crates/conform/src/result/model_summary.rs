@@ -59,9 +59,10 @@ impl Answer {
 impl Model {
     /// Returns the factor that the motion needs whose absence changes the sets most.
     fn motion_left_out(&self) -> Option<(String, String)> {
-        let gauges = self.left_out.iter().filter_map(|left| {
-            left.cost.map(|_| (left.gauge.unwrap_or(f64::INFINITY), &left.motion))
-        });
+        let gauges = self
+            .left_out
+            .iter()
+            .filter_map(|left| left.cost.map(|_| (left.growth(), &left.motion)));
         let (gauge, motion) = gauges.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let of = self.left_out.len();
         let value = match gauge.is_finite() {

@@ -96,6 +96,16 @@ impl Tube {
         all
     }
 
+    /// Returns the smallest and the largest radius of the hull in a state at the end of a recording,
+    /// with the noise set; infinite where a reachable set ends early. Of recordings on one grid they
+    /// differ where U grows with the nominal motion.
+    #[must_use]
+    pub fn range_at_end(&self, state: usize) -> [f64; 2] {
+        let strands = (0..).zip(&self.strands);
+        let radii = strands.map(|(at, strand)| self.radii((at, strand.end().0 as u32))[state]);
+        radii.fold([f64::INFINITY, 0.0], |[a, b], radius| [a.min(radius), b.max(radius)])
+    }
+
     /// Returns where reachable sets, or nominal motions, could not be followed to the end.
     pub(crate) fn lost(&self, problem: &Problem) -> Result<Vec<Lost>> {
         let of_sets = self.strands.iter().filter_map(|strand| strand.lost.clone());

@@ -3,6 +3,7 @@ use reachtube_robot::{Robot, Workspace};
 
 use crate::error::{Error, Result};
 use crate::prepare::low_pass::LowPass;
+use crate::prepare::past::Past;
 use crate::prepare::settings::{VelocitySource, gain_of_each_joint};
 
 /// Periods of the cut-off to both sides over which samples are weighed. Beyond them, the low-pass
@@ -78,9 +79,10 @@ impl LiveLog {
         self.even.take(time, parts)
     }
 
-    /// Returns the next prepared sample, if it is complete.
+    /// Returns the next prepared sample, if it is complete, and its state as far as the recorded
+    /// samples up to it alone tell, 2n; empty if nothing is filtered.
     #[expect(clippy::should_implement_trait, reason = "an iterator cannot lend its items")]
-    pub fn next(&mut self) -> Option<&Sample> {
+    pub fn next(&mut self) -> Option<(&Sample, &[f64])> {
         let Self { gains, even, filter, made } = self;
         while let Some(sample) = even.next() {
             made.copy(sample);
@@ -89,7 +91,7 @@ impl LiveLog {
             torques.for_each(|(torque, gain)| *torque *= gain);
             let is_complete = filter.as_mut().is_none_or(|filter| filter.filtered(made));
             if is_complete {
-                return Some(made);
+                return Some((made, filter.as_ref().map_or(&[], LiveFilter::told)));
             }
         }
         None
@@ -127,6 +129,13 @@ impl Rows {
             .then(|| &self.rows[start..start + self.width * self.count])
     }
 
+    /// Returns the last `count` rows, once there are as many; at most as many as are kept.
+    fn last(&self, count: usize) -> Option<&[f64]> {
+        let end = (self.taken % self.count as u64) as usize + self.count;
+        let rows = (end - count) * self.width..end * self.width;
+        (self.taken >= count as u64).then(|| &self.rows[rows])
+    }
+
     /// Adds up the columns from `first` on, weighed, into `sums`, one per column. The weights are
     /// centred on the rows.
     fn weighed(&self, first: usize, weights: &[f64], sums: &mut [f64]) {
@@ -154,6 +163,9 @@ struct LiveFilter {
     /// The filtered sample, 3n.
     filtered: Rows,
     off: Rows,
+    past: Past,
+    /// What the samples up to each one tell, 2n.
+    told: Rows,
     row: Vec<f64>,
     taken_off: Vec<f64>,
     workspace: Workspace<f64>,
@@ -176,7 +188,10 @@ impl LiveFilter {
         let weights = low_pass.weights(PERIODS);
         let slope = convolved(&weights, step);
         let zeros = || vec![0.0; n];
+        let delay = slope.len() / 2 + weights.len() / 2;
         Ok(Self {
+            past: Past::new(0.5 / cut_off, step, !differentiates),
+            told: Rows::new(2 * n, delay + 1),
             step,
             raw: Rows::new(3 * n, slope.len()),
             filtered: Rows::new(3 * n, weights.len() / 2 + 1),
@@ -199,13 +214,15 @@ impl LiveFilter {
     }
 
     fn clear(&mut self) {
-        [&mut self.raw, &mut self.filtered, &mut self.off].into_iter().for_each(|of| of.taken = 0);
+        let Self { raw, filtered, off, told, .. } = self;
+        [raw, filtered, off, told].into_iter().for_each(|of| of.taken = 0);
     }
 
     /// Takes a sample and replaces it by the one that it completes, if it completes one.
     fn filtered(&mut self, sample: &mut Sample) -> bool {
         let n = self.taken_off.len();
         self.raw.take(&sample.values);
+        self.tell();
         if self.raw.all().is_none() {
             return false;
         }
@@ -230,6 +247,25 @@ impl LiveFilter {
         }
         sample.time -= self.delay();
         true
+    }
+
+    /// Estimates the state at the newest sample from it and earlier ones.
+    fn tell(&mut self) {
+        let (n, width) = (self.taken_off.len(), self.raw.width);
+        let Self { raw, past, told, row, .. } = self;
+        if let Some(rows) = raw.last(past.samples()) {
+            for joint in 0..n {
+                let of = |column: usize| move |k: usize| rows[k * width + column];
+                let [q, qd, _] = past.at_last(of(joint), of(n + joint));
+                (row[joint], row[n + joint]) = (q, qd);
+            }
+        }
+        told.take(&row[..2 * n]);
+    }
+
+    /// Returns what was told of the sample that was completed last.
+    fn told(&self) -> &[f64] {
+        self.told.all().map_or(&[], |rows| &rows[..self.told.width])
     }
 
     /// Computes gravity and the dry friction that acts or holds, at the filtered state, as
@@ -328,7 +364,7 @@ mod tests {
                 let (live_delay, mut count) = (live.delay(), 0);
                 for k in 0..run.len() {
                     live.take(run.times[k], [run.q(k), run.qd(k), run.torque(k)]).unwrap();
-                    let Some(sample) = live.next() else { continue };
+                    let Some((sample, told)) = live.next() else { continue };
                     assert!((sample.time - run.times[k] + live_delay).abs() < 1e-9);
                     let at = (sample.time / STEP).round() as usize;
                     assert!((sample.time - at as f64 * STEP).abs() < 1e-9);
@@ -337,6 +373,10 @@ mod tests {
                     };
                     let known = [log.q(row), log.qd(row), log.tau(row)].concat();
                     assert_eq!(sample.values.len(), known.len());
+                    assert_eq!(told.len(), 12);
+                    for (own, known) in told.iter().zip(&log.before[18 * row..]) {
+                        assert!((own - known).abs() < 1e-9, "{own} {known}");
+                    }
                     for (own, known) in sample.values.iter().zip(known) {
                         let off = (own - known).abs();
                         assert!(off < 0.02, "{torque:?} {velocity:?} {off}");

@@ -6,7 +6,7 @@ const FEWEST: usize = 5;
 /// Estimates position, velocity and acceleration of a joint at its last sample from that sample and
 /// the ones before it, and nothing later: by least squares, recorded velocities follow a parabola,
 /// and positions its integral; where there are no velocities, positions follow a cubic.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Past {
     /// The weights of the velocities, or of the positions, in the coefficients of the polynomial,
     /// the oldest sample first.
@@ -26,18 +26,20 @@ impl Past {
         Self { weights: inverse.expect("both factors were computed"), has_velocities, step }
     }
 
-    /// Returns position, velocity and acceleration at the last of some samples, whose positions and
-    /// velocities are given; without velocities, positions alone. Too few samples give no
-    /// acceleration: it is 0.
-    pub(super) fn at_last(&self, q: &[f64], qd: &[f64]) -> [f64; 3] {
-        let (count, step) = (self.weights.ncols(), self.step);
-        let Some(first) = q.len().checked_sub(count) else {
-            let last = |values: &[f64]| values.last().copied().unwrap_or_default();
-            return [last(q), last(qd), 0.0];
-        };
-        let values = if self.has_velocities { &qd[first..] } else { &q[first..] };
+    /// Returns the number of samples of an estimate.
+    pub(super) fn samples(&self) -> usize {
+        self.weights.ncols()
+    }
+
+    /// Returns position, velocity and acceleration at the last of as many samples as an estimate
+    /// has, whose positions and velocities are given, the oldest first. Without velocities, the
+    /// positions alone tell.
+    pub(super) fn at_last(&self, q: impl Fn(usize) -> f64, qd: impl Fn(usize) -> f64) -> [f64; 3] {
+        let (count, step) = (self.samples(), self.step);
         let coefficient = |power: usize| -> f64 {
-            self.weights.row(power).iter().zip(values).map(|(weight, value)| weight * value).sum()
+            let value = |k: usize| if self.has_velocities { qd(k) } else { q(k) };
+            let weights = self.weights.row(power);
+            weights.iter().enumerate().map(|(k, weight)| weight * value(k)).sum()
         };
         if !self.has_velocities {
             let [q, qd, half] = [0, 1, 2].map(coefficient);
@@ -49,7 +51,7 @@ impl Past {
             let time = (k + 1) as f64 - count as f64;
             step * time * (qd + time * (0.5 * slope + time * curve / 3.0))
         };
-        let start = q[first..].iter().enumerate().map(|(k, q)| q - moved(k)).sum::<f64>();
+        let start = (0..count).map(|k| q(k) - moved(k)).sum::<f64>();
         [start / count as f64, qd, slope / step]
     }
 }
@@ -68,11 +70,11 @@ mod tests {
         let qd: Vec<f64> = (0..30).map(velocity).collect();
         for has_velocities in [false, true] {
             let past = Past::new(0.17, step, has_velocities);
-            let found = past.at_last(&q, &qd);
+            let first = q.len() - past.samples();
+            let found = past.at_last(|k| q[first + k], |k| qd[first + k]);
             for (found, known) in found.iter().zip([q[29], qd[29], 1.0 + 18.0 * at(29)]) {
                 assert!((found - known).abs() < 1e-8, "{found} {known}");
             }
-            assert_eq!(past.at_last(&q[..3], &qd[..3]), [q[2], qd[2], 0.0]);
         }
     }
 }

@@ -49,7 +49,7 @@ impl<'a> Signals<'a> {
     }
 
     /// Returns positions, velocities and accelerations as far as the last `span` \[s\] alone tells,
-    /// K x 3n.
+    /// K x 3n; 0 where a recording is not as long yet.
     pub(super) fn before(&self, span: f64, differentiated: bool) -> Vec<f64> {
         let n = self.raw.run.joints;
         let past = Past::new(span, self.step, !differentiated);
@@ -58,8 +58,9 @@ impl<'a> Signals<'a> {
             let q = self.even(Run::q, joint);
             let qd = if differentiated { vec![] } else { self.even(Run::qd, joint) };
             rows.resize(3 * n * q.len(), 0.0);
-            for (k, row) in rows.chunks_exact_mut(3 * n).enumerate() {
-                let known = past.at_last(&q[..=k], qd.get(..=k).unwrap_or_default());
+            let told = rows.chunks_exact_mut(3 * n).skip(past.samples() - 1).enumerate();
+            for (first, row) in told {
+                let known = past.at_last(|k| q[first + k], |k| qd[first + k]);
                 known.iter().enumerate().for_each(|(part, x)| row[part * n + joint] = *x);
             }
         }

@@ -138,6 +138,7 @@ const STATES: Choices = &[("all", "positions and velocities"), ("positions", "po
 const NOMINAL_STARTS: Choices = &[
     ("mean", "the mean of the first states of the suite's runs"),
     ("own", "each run's own first state"),
+    ("past", "where the samples before a window of a log tell that it starts"),
 ];
 
 const EQUATIONS: Choices = &[

@@ -17,6 +17,7 @@ pub(crate) struct Context {
     pub drive: Arc<dyn Drive>,
     pub shape: Shape,
     pub options: ReadOptions,
+    pub nominal: NominalStart,
     /// Whether every run has a nominal motion of its own, whatever its input.
     pub is_own: bool,
     /// SHA-256 of all this.
@@ -37,20 +38,22 @@ impl Context {
                            memory: use the notion hull, or read the recordings on one machine";
             return Err(Error::Fold(Advice::from(problem).with("notion", "hull")));
         }
-        let is_own = settings.nominal == NominalStart::Own
-            || setup.condition.is_none() && setup.differs_by_run();
+        let is_own =
+            settings.nominal.is_of_run() || setup.condition.is_none() && setup.differs_by_run();
         let options = read_options(setup);
-        let parts = (drive.reading(), settings.until, is_own);
+        let parts = (drive.reading(), settings.until, is_own, settings.nominal);
         let mut text = serde_json::to_string(&parts).expect("settings have string keys");
         text += &format!("{:?}", options.gap_limit);
         let digest = Sha256::digest(text).into();
         let shape = Shape { states: dynamics.states(), inputs: dynamics.inputs() };
-        Ok(Self { drive: Arc::clone(drive), shape, options, is_own, digest })
+        let nominal = settings.nominal;
+        Ok(Self { drive: Arc::clone(drive), shape, options, nominal, is_own, digest })
     }
 
     pub(crate) fn input(&self, file: &str, run: &Run) -> Result<RunInput, Vec<Defect>> {
         let path = Path::new(file);
         run.check_size(path, self.shape.inputs).map_err(|defect| vec![defect])?;
+        self.nominal.check(path, run)?;
         self.drive.input(path, run, None)
     }
 }

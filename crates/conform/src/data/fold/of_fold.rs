@@ -9,7 +9,6 @@ use crate::data::fold::suite_fold::SuiteFold;
 use crate::data::origin::Origin;
 use crate::data::problem::Problem;
 use crate::data::recordings::Recordings;
-use crate::data::settings::NominalStart;
 use crate::data::setup::Setup;
 use crate::data::suite::Suite;
 use crate::error::{Error, Result};
@@ -93,7 +92,7 @@ fn entries_of(name: &str, fold: &SuiteFold) -> impl Iterator<Item = (usize, RunE
 fn suite(name: String, fold: SuiteFold, setup: &Setup, kept: &mut HashMap<usize, Run>) -> Suite {
     let whole = fold.whole.iter().map(|(place, whole)| (place as usize, whole.run.clone()));
     kept.extend(whole);
-    let has_own_start = setup.settings.nominal == NominalStart::Own;
+    let has_own_start = setup.settings.nominal.is_of_run();
     let runs: Vec<_> = fold.runs.into_values().collect();
     Suite {
         nominal_start: match setup.nominal_starts.get(&name) {

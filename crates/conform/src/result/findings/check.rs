@@ -161,6 +161,7 @@ mod tests {
             initial_set: Some(1.5e6),
             input_set: Some(1.25),
             both_sets: Some(1.2),
+            parts: vec![],
             noise_position: 0.1,
             noise_velocity: 0.2,
         };
