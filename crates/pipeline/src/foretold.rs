@@ -12,16 +12,21 @@ pub(crate) struct Foretold {
     /// The factor by which the sets of the other motions become wider that enclose each motion; at
     /// least 1, and infinite if none do.
     factor: f64,
+    /// The geometric mean of these factors over the motions.
+    mean_factor: f64,
 }
 
 impl Foretold {
     /// Takes the sets of an answer before they were widened, and motions that were left out.
     pub(crate) fn new(answer: &Answer, left_out: &[Unseen]) -> Self {
         let joints = &answer.found.usefulness.parts;
+        let growths = || left_out.iter().map(|own| own.left_out.growth());
+        let logarithms: f64 = growths().map(f64::ln).sum();
         Self {
             half_widths: joints.iter().map(|own| own.half_width.unwrap_or(f64::INFINITY)).collect(),
             displacements: joints.iter().map(|own| own.displacement).collect(),
-            factor: left_out.iter().map(|own| own.left_out.growth()).fold(1.0, f64::max),
+            factor: growths().fold(1.0, f64::max),
+            mean_factor: (logarithms / left_out.len().max(1) as f64).exp(),
         }
     }
 
@@ -38,6 +43,12 @@ impl Foretold {
     /// Returns half the width of the widest set by the joint's displacement.
     pub(crate) fn widest(&self) -> f64 {
         self.ratio(self.widest_joint())
+    }
+
+    /// Returns half the width of the widest set by the joint's displacement, with the mean factor of
+    /// the motions. A single motion decides the largest factor, so that this one is better known.
+    pub(crate) fn typical(&self) -> f64 {
+        self.smallest().into_iter().fold(0.0, f64::max) * self.mean_factor
     }
 
     /// Returns the joint, from 0, of the widest set.
@@ -61,6 +72,7 @@ mod tests {
             half_widths: vec![half_width, 0.1],
             displacements: vec![2.0, 1.0],
             factor,
+            mean_factor: 1.0,
         };
         assert_eq!(foretold(0.4, 1.5).widest(), 0.30000000000000004);
         assert_eq!(foretold(0.1, 2.0).widest(), 0.2);

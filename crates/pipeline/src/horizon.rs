@@ -156,7 +156,7 @@ pub(crate) fn try_horizon(
     };
     let name = format!("{horizon} s, {most} windows, {}", trial.name());
     let widths = |found: Widened| {
-        let foretold = vec![found.foretold.widest()];
+        let foretold = vec![found.foretold.typical()];
         Ok([ratios(&found.answer), found.foretold.smallest(), foretold])
     };
     let found = || Widened::of_some(trial, recordings, horizon, most).and_then(widths);
@@ -194,7 +194,7 @@ pub(crate) fn longest_of_all(
             let widened = Widened::new(trial, recordings, horizon)?;
             let widened = found.insert(widened);
             let ratios = ratios(&widened.answer);
-            Ok([ratios.clone(), ratios, vec![widened.foretold.widest()]])
+            Ok([ratios.clone(), ratios, vec![widened.foretold.typical()]])
         })?;
         if widths.worst().1 > largest {
             wide.push(widths);

@@ -18,6 +18,9 @@ use crate::windows::Prepared;
 /// Half a set's width by the joint's displacement from which on no scale of U makes it useful.
 const HOPELESS: f64 = 2.0;
 
+/// Number of horizons over which it is judged, at most.
+const COMPARED: usize = 3;
+
 /// Accelerations below this, rad/s², belong to a joint that rests.
 const REST: f64 = 1e-3;
 
@@ -42,7 +45,7 @@ pub(crate) fn choose_input_doubling(
             (Vec::new(), "recordings of repeated motions share one nominal motion".into())
         }
         None if is_fitted => (Vec::new(), "a fit is of sets that every motion has".into()),
-        None => growing(trial, recordings, longest(&horizons, largest), given)?,
+        None => growing(trial, recordings, up_to(&horizons, largest), given)?,
     };
     let words: Vec<String> = doubling.iter().map(|rate| significant(*rate, 3)).collect();
     let value = if words.is_empty() { "none".into() } else { words.join(", ") };
@@ -55,39 +58,56 @@ pub(crate) fn choose_input_doubling(
     }
 }
 
+/// Returns the longest horizon at which sets are narrow, and up to two below it, the longest last.
+fn up_to(horizons: &[HorizonWidths], largest: f64) -> &[HorizonWidths] {
+    let longest = longest(horizons, largest).horizon;
+    let count = horizons.iter().take_while(|widths| widths.horizon <= longest).count();
+    &horizons[count.saturating_sub(COMPARED)..count]
+}
+
 /// Returns the accelerations at which U is twice what it is at rest, and why; none if the widest
-/// set, with the factor for a motion that is left out, is not narrower by a fifth then, and
-/// narrower than the motion. It is judged over the horizon that is given, or the one at which sets
-/// are narrow where U is the same along every motion.
+/// set, with the mean factor for motions left out, is not narrower by a fifth then, and narrower
+/// than the motion. It is judged over the horizon that is given, or on average over those at which
+/// sets are narrow where U is the same along every motion, `same`: at a single one, some window
+/// decides that another cut of the logs does not have.
 fn growing(
     trial: &Trial,
     recordings: &Prepared,
-    same: &HorizonWidths,
+    same: &[HorizonWidths],
     given: Option<f64>,
 ) -> Result<(Vec<f64>, String)> {
-    let (joint, width) = same.worst_smallest();
+    let (joint, width) = same.last().expect("a horizon was tried").worst_smallest();
     if width > HOPELESS {
         let (joint, width) = (&trial.robot.joints()[joint].name, percent(width));
         let reason =
             format!("the set of {joint} is {width} of its motion, too wide for it to help");
         return Ok((Vec::new(), reason));
     }
-    let horizon = given.unwrap_or(same.horizon);
     let typical = typical_accelerations(recordings.logs);
-    let widest = |input_doubling: Option<Vec<f64>>| {
+    let widest = |horizon: f64, input_doubling: Option<Vec<f64>>| {
         let trial = Trial { input_doubling, ..trial.of_horizons(given) };
         let widths = try_horizon(&trial, recordings, horizon, MOST_WINDOWS)?;
         Ok::<_, Error>(widths.map_or(f64::INFINITY, |widths| widths.foretold))
     };
-    let [own, other] = [widest(Some(typical.clone()))?, widest(None)?];
+    let horizons = given.map_or_else(|| same.iter().map(|own| own.horizon).collect(), |h| vec![h]);
+    let (mut logarithms, mut last) = (0.0, [f64::INFINITY; 2]);
+    for horizon in &horizons {
+        last = [widest(*horizon, Some(typical.clone()))?, widest(*horizon, None)?];
+        logarithms += (last[0] / last[1]).ln();
+    }
+    let ([own, other], ratio) = (last, (logarithms / horizons.len() as f64).exp());
+    let horizons: Vec<String> = horizons.iter().map(ToString::to_string).collect();
     let reason = format!(
-        "the widest set, with the factor for a motion left out, is {} of the motion at {horizon} s \
-         where U grows with the acceleration of the nominal motion, and {} where it does not",
+        "where U grows with the acceleration of the nominal motion, the widest set, with the mean \
+         factor for motions left out, is {} as wide over {} s as where it does not, at last {} in \
+         place of {} of the motion",
+        percent(ratio),
+        horizons.join(", "),
         percent(own),
         percent(other)
     );
     // A set as wide as the motion foretells nothing, and the choice has no ground.
-    let is_better = own < 1.0 && own < HELPS * other;
+    let is_better = own < 1.0 && ratio < HELPS;
     Ok((if is_better { typical } else { Vec::new() }, reason))
 }
 

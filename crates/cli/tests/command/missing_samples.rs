@@ -133,12 +133,14 @@ fn check_leaves_out_what_is_missing_or_wrong_and_says_so() {
         }
     });
     assert!(gap.stderr.contains("log_2.csv:502: 500 ms of samples are missing"), "{gap:#?}");
-    assert!(some < all && gap.code == run.code, "{some} of {all}: {gap:#?}");
+    // The low-pass of a shorter stretch rounds differently, and X0 touches the starts.
+    let is_inside = |run: &Run| run.json()["largest_excess"].as_f64().unwrap() < 1e-9;
+    assert!(some < all && is_inside(&run) && is_inside(&gap), "{some} of {all}: {gap:#?}");
     let (some, wrong) = check(&|row, k, number| {
         row[1] += if (k, number) == (500, 2) { 0.5 } else { 0.0 };
     });
     assert!(wrong.stderr.contains("log_2.csv:502: shoulder at 5.000 s jumps"), "{wrong:#?}");
-    assert!(some < all && wrong.code == run.code, "{some} of {all}: {wrong:#?}");
+    assert!(some < all && is_inside(&wrong), "{some} of {all}: {wrong:#?}");
     let words = "no window of a log crosses one";
     lab.run("check --model made/model.json --data logs --max-gap 0.1").fails_with(&[words]);
 }

@@ -35,10 +35,11 @@ impl Unseen<'_> {
         let program = whole.program(&model, &own);
         let input_only = whole.settings.nominal.is_measured();
         let growth = program.growth(&smallest.sets, input_only);
-        let in_turn =
-            Program::growth_in_turn(from_ref(&program), &smallest.sets, input_only, |_| true);
-        let ([initial_growth, input_growth], wider) =
-            (in_turn, program.widest(&smallest.sets, in_turn));
+        let own_rows = from_ref(&program);
+        let [initial_growth, input_growth] =
+            Program::growth_in_turn(own_rows, &smallest.sets, input_only);
+        let wider = program.wider(own_rows, &smallest.sets, input_only, |_| true);
+        let wider = wider.map(|parts| parts.into_iter().fold(1.0, f64::max));
         let of_track = |t: &usize| {
             let own = whole.program(&model, &[*t]);
             [own.outside(&smallest.sets), own.rows() / 2]

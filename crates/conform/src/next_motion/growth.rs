@@ -18,8 +18,9 @@ pub struct Growth {
     pub input_set: Option<f64>,
     /// Factor of all radii of X0 and U, for a linear model. `None` if no factor suffices.
     pub both_sets: Option<f64>,
-    /// For each part, the factor by which its set of positions at the end becomes wider once X0 and
-    /// then U have grown so that the values of the part are enclosed; of a linear model. `None` if
+    /// For each part, the factor by which its set of positions at the end becomes wider once X0 has
+    /// grown in each state of the part as first samples need it, and then U by a factor, so that
+    /// the values of the part are enclosed; of a linear model. `None` if
     /// no factors suffice.
     pub parts: Vec<Option<f64>>,
     /// What the radii of V in all positions would have to grow by, rad or m.
@@ -39,9 +40,8 @@ impl Growth {
         let [initial_set, input_set, both_sets] = factors.unwrap_or([None; 3]);
         let (n, input_only) = (problem.inputs(), problem.settings().nominal.is_measured());
         let wider = |program: &Program, part: usize| {
-            let own = |state: usize| state % n == part;
-            let [x, u] = Program::growth_in_turn(from_ref(program), sets, input_only, own);
-            Some(program.wider(sets, part, [x?, u?]))
+            let is_own = |state: usize| state % n == part;
+            Some(program.wider(from_ref(program), sets, input_only, is_own)?[part])
         };
         let parts = (0..n).map(|part| program.as_ref().and_then(|program| wider(program, part)));
         let parts = parts.collect();

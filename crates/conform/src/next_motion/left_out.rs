@@ -172,9 +172,9 @@ impl Without<'_> {
         let growth = own.iter().map(growth).try_fold(1.0, |max: f64, g| g.map(|g| max.max(g)));
         let compared = match self.problem.dynamics().linear_system() {
             Some(_) => {
-                let in_turn = Program::growth_in_turn(own, &sets, input_only, |_| true);
-                let ([initial_gauge, input_gauge], wider) =
-                    (in_turn, others.widest(&sets, in_turn));
+                let [initial_gauge, input_gauge] = Program::growth_in_turn(own, &sets, input_only);
+                let wider = others.wider(own, &sets, input_only, |_| true);
+                let wider = wider.map(|parts| parts.into_iter().fold(1.0, f64::max));
                 let outside = Some(own.iter().map(|own| own.outside(&sets)).sum());
                 LeftOut { outside, gauge: growth, initial_gauge, input_gauge, wider, ..unknown }
             }

@@ -30,7 +30,8 @@ pub struct LeftOut {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input_gauge: Option<f64>,
     /// The factor, at least 1, by which a set of positions at the end becomes wider, the one that
-    /// does most, once X0 and U have grown so in turn. `None` as above.
+    /// does most, once X0 has grown in each state as the first samples of the motion need it, and
+    /// then U by a factor. `None` as above.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wider: Option<f64>,
 }

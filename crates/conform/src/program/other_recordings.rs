@@ -126,65 +126,81 @@ impl Program<'_> {
         self.factor(sets, first..self.shape.radii(), |_, _| true)
     }
 
-    /// Returns the factors of X0 and of U in turn with which the rows of all `programs` hold whose
-    /// state is asked, up to rounding: the factor of the radii of X0 for the rows of first samples, where U has no effect
+    /// Returns the factors of X0 and of U in turn with which the rows of all `programs` hold, up to
+    /// rounding: the factor of the radii of X0 for the rows of first samples, where U has no effect
     /// yet, and then the factor of the radii of U for all other rows; `None` if no factor suffices.
     /// X0 keeps its radii where the noise of the sensors limits it (`input_only`).
     pub(crate) fn growth_in_turn(
         programs: &[Self],
         sets: &UncertaintySets,
         input_only: bool,
-        is_asked: impl Fn(usize) -> bool,
     ) -> [Option<f64>; 2] {
         let states = sets.initial_set.dimension();
-        let largest = |factor: &dyn Fn(&Self) -> Option<f64>| {
-            let mut factors = programs.iter().map(factor);
-            factors.try_fold(1.0, |max: f64, factor| factor.map(|factor| max.max(factor)))
-        };
-        // Where X0 keeps its radii, U must make up for first samples, too.
         let initial = match input_only {
             true => Some(1.0),
-            false => largest(&|own| own.factor(sets, 0..states, |k, i| k == 0 && is_asked(i))),
+            false => {
+                Self::largest(programs, |own| own.factor(sets, 0..states, |sample, _| sample == 0))
+            }
         };
         let input = initial.and_then(|factor| {
             let grown = sets.with_initial_scaled(factor);
-            let is_left = |k: usize, i: usize| (input_only || k > 0) && is_asked(i);
-            largest(&|own| own.factor(&grown, states..own.shape.radii(), is_left))
+            Self::input_factor(programs, &grown, input_only, |_| true)
         });
         [initial, input]
     }
 
-    /// Returns by which factor the set of positions of a part at the last samples becomes wider, if
-    /// the radii of X0 and of U grow by two factors; the largest factor of several samples.
+    /// Returns by which factors the sets of the positions of parts become wider at the last samples
+    /// of this program, if X0 and then U grow as the rows of `programs` need it whose state is
+    /// asked: X0 in each state by what first samples miss, and U by a factor. The largest factor of
+    /// several samples, 1 for each part if no row is missed; `None` if no factor suffices.
     pub(crate) fn wider(
         &self,
+        programs: &[Self],
         sets: &UncertaintySets,
-        part: usize,
-        [initial, input]: [f64; 2],
-    ) -> f64 {
-        let radius = self.unknowns(sets).radius;
-        let (states, all) = (sets.initial_set.dimension(), self.shape.radii());
-        let wider = |b: usize| {
-            let last = self.blocks[b].envelope.len().checked_sub(1)?;
-            let gains = self.row(b, last, part).1;
-            let [x, u] = [0..states, states..all].map(|radii| gains.dot_of(radii, &radius));
-            let width = x + u + sets.noise_radius(part);
-            (width > NEGLIGIBLE_RADIUS)
-                .then(|| 1.0 + ((initial - 1.0) * x + (input - 1.0) * u) / width)
+        input_only: bool,
+        is_asked: impl Fn(usize) -> bool,
+    ) -> Option<Vec<f64>> {
+        let mut grown = sets.clone();
+        for own in programs.iter().filter(|_| !input_only) {
+            for row in own.all_reached(&own.unknowns(sets)) {
+                let (_, k, i, _) = row.index;
+                if k == 0 && is_asked(i) && own.is_missed(&row) {
+                    let radius = &mut grown.initial_set.radius[i];
+                    *radius = radius.max(sets.initial_set.radius[i] + row.excess);
+                }
+            }
+        }
+        let factor = Self::input_factor(programs, &grown, input_only, &is_asked)?;
+        let radii = [sets, &grown.with_input_scaled(factor)].map(|sets| self.unknowns(sets).radius);
+        let wider = |part: usize| {
+            let wider = |b: usize| {
+                let last = self.blocks[b].envelope.len().checked_sub(1)?;
+                let gains = self.row(b, last, part).1;
+                let noise = sets.noise_radius(part);
+                let [before, after] = radii.each_ref().map(|radius| gains.dot(radius) + noise);
+                (before > NEGLIGIBLE_RADIUS).then(|| after / before)
+            };
+            (0..self.blocks.len()).filter_map(wider).fold(1.0, f64::max)
         };
-        (0..self.blocks.len()).filter_map(wider).fold(1.0, f64::max)
+        Some((0..self.shape.inputs).map(wider).collect())
     }
 
-    /// Returns by which factor the set of positions of the part becomes wider that does most, if
-    /// factors of X0 and of U are known.
-    pub(crate) fn widest(
-        &self,
+    /// Returns the factor of the radii of U with which the rows hold that X0 does not decide alone
+    /// and whose state is asked. Where X0 keeps its radii, U must make up for first samples, too.
+    fn input_factor(
+        programs: &[Self],
         sets: &UncertaintySets,
-        [initial, input]: [Option<f64>; 2],
+        input_only: bool,
+        is_asked: impl Fn(usize) -> bool,
     ) -> Option<f64> {
-        let factors = [initial?, input?];
-        let parts = 0..self.shape.inputs;
-        Some(parts.map(|part| self.wider(sets, part, factors)).fold(1.0, f64::max))
+        let states = sets.initial_set.dimension();
+        let is_left = |k: usize, i: usize| (input_only || k > 0) && is_asked(i);
+        Self::largest(programs, |own| own.factor(sets, states..own.shape.radii(), is_left))
+    }
+
+    fn largest(programs: &[Self], factor: impl Fn(&Self) -> Option<f64>) -> Option<f64> {
+        let mut factors = programs.iter().map(factor);
+        factors.try_fold(1.0, |max: f64, factor| factor.map(|factor| max.max(factor)))
     }
 
     /// Returns whether a row of recordings without which the sets were found leaves them by more
