@@ -17,10 +17,10 @@ use crate::progress::Progress;
 ///
 /// The robot of the problem, and the inputs that were computed with it, must not have seen the
 /// motion either: identify the robot without it first. The comparison is a description, computed in
-/// floating point. It bounds no probability. Returns two factors of `allowance` too, radii of X0 and
-/// U, 3n, of which the first multiplies those of X0 and the second those of U: the motion is
-/// enclosed once they are added to these sets. `None` if no factors suffice, and for a notion that
-/// asks points.
+/// floating point. It bounds no probability. Returns two factors of `allowance` too, radii of X0
+/// and U, 3n. Once the radii of X0 times the first factor and the radii of U times the second are
+/// added, these sets enclose the motion. `None` if no factors suffice, and for a notion that asks
+/// points.
 ///
 /// # Errors
 ///

@@ -5,8 +5,9 @@
 //! motions that are held out, or more, radii are added to the sets, before the held-out motions are
 //! looked at: the least factor of X0, and then of the input's error, that covers all motions that
 //! were left out, and that one more motion exceeds with a probability of 5 % at most, if motions
-//! need factors of one normal distribution. From what is accepted to half again that, a part of these radii is added
-//! that grows from none to all, so that a sample more or less cannot make the sets jump.
+//! need factors of one normal distribution. From what is accepted to half again that, a part of
+//! these radii is added that grows from none to all, so that a sample more or less cannot make the
+//! sets jump.
 
 use reachtube_conform::Answer;
 use reachtube_conform::next_motion::LeftOut;

@@ -45,8 +45,8 @@ impl Foretold {
         self.ratio(self.widest_joint())
     }
 
-    /// Returns half the width of the widest set by the joint's displacement, with the mean factor of
-    /// the motions. A single motion decides the largest factor, so that this one is better known.
+    /// Returns half the width of the widest set by the joint's displacement, with the mean factor
+    /// of the motions. A single motion decides the largest factor.
     pub(crate) fn typical(&self) -> f64 {
         self.smallest().into_iter().fold(0.0, f64::max) * self.mean_factor
     }

@@ -67,9 +67,9 @@ fn up_to(horizons: &[HorizonWidths], largest: f64) -> &[HorizonWidths] {
 
 /// Returns the accelerations at which U is twice what it is at rest, and why; none if the widest
 /// set, with the mean factor for motions left out, is not narrower by a fifth then, and narrower
-/// than the motion. It is judged over the horizon that is given, or on average over those at which
-/// sets are narrow where U is the same along every motion, `same`: at a single one, some window
-/// decides that another cut of the logs does not have.
+/// than the motion. It is judged over the horizon that is given, or on average over horizons at
+/// which sets are narrow where U is the same along every motion, `same`: at a single one, some
+/// window decides that another cut of the logs does not have.
 fn growing(
     trial: &Trial,
     recordings: &Prepared,

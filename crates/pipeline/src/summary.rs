@@ -145,8 +145,8 @@ impl Built {
         (!self.answer.model.allowance.is_empty()).then(|| choice.value.clone())
     }
 
-    /// Returns how far the sets of single windows differ where U grows with the nominal motion: those
-    /// of the joint whose set is the widest in some window.
+    /// Returns how far the sets of single windows differ where U grows with the nominal motion, of
+    /// the joint whose set is the widest in some window.
     fn spread(&self) -> Option<String> {
         self.choices.input_doubling.as_ref().filter(|doubling| !doubling.is_empty())?;
         let of = |(joint, row): (usize, JointRow)| {

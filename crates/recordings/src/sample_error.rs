@@ -44,7 +44,7 @@ pub enum SampleError {
         /// The longest time that is allowed, s.
         longest: f64,
     },
-    /// A motion starts where earlier samples tell, and nothing is known of them.
+    /// A motion starts where earlier samples tell, and they are unknown.
     #[error(
         "the model's motions start where the samples before them tell; give samples as they are \
          recorded, of which the model knows how they are prepared"

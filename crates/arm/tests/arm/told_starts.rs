@@ -13,8 +13,8 @@ const START: [f64; 2] = [0.2, -0.5];
 
 const STEP: f64 = 0.004;
 
-/// Six joints at a constant velocity, of which the samples before tell the start up to an error, rad
-/// and rad/s.
+/// Six joints at a constant velocity, of which the samples before tell the start up to an error,
+/// rad and rad/s.
 fn run([q, qd]: [f64; 2]) -> Run {
     let times = grid(STEP, 60);
     let state = |t: &f64| [[START[0] + START[1] * t; 6], [START[1]; 6]].concat();
@@ -64,7 +64,7 @@ fn the_error_of_the_start_is_in_its_set_and_nowhere_else() {
             assert!((radius - known).abs() < 1e-5, "{radii:?}");
         }
     }
-    // The model file keeps the start's kind, and says nothing of where its motions started.
+    // The model file has the kind of the start, and no nominal start of a suite.
     assert_eq!(answer.model.settings.nominal, NominalStart::Past);
     assert!(answer.model.data.suites.iter().all(|suite| suite.nominal_start.is_none()));
 }
@@ -73,11 +73,15 @@ fn the_error_of_the_start_is_in_its_set_and_nowhere_else() {
 fn other_motions_are_compared_from_where_they_are_told_to_start() {
     let answer = known();
     assert!(check(&answer, [0.009, -0.09]).holds());
-    let outside = check(&answer, [0.02, 0.1]);
-    assert!(!outside.holds());
-    // Twice X0 encloses it, and U need not grow: the sets are twice as wide.
-    let growth = outside.growth.unwrap();
-    assert!(growth.parts.iter().all(|part| (part.unwrap() - 2.0).abs() < 1e-3), "{growth:?}");
+    // X0 grows in the state that needs it, and U does not: the sets become wider by that.
+    let end = STEP * 59.0;
+    for [q, qd] in [[0.02, 0.1], [0.01, -0.2], [-0.03, 0.0]] {
+        let outside = check(&answer, [q, qd]);
+        assert!(!outside.holds());
+        let wider = (q.abs().max(0.01) + end * qd.abs().max(0.1)) / (0.01 + end * 0.1);
+        let parts = outside.growth.unwrap().parts;
+        assert!(parts.iter().all(|part| (part.unwrap() - wider).abs() < 1e-4), "{parts:?}");
+    }
 }
 
 #[test]

@@ -79,8 +79,8 @@ pub struct UnseenMotion {
     /// The factor of U that encloses the rest of the motion once X0 has grown so.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input_growth: Option<f64>,
-    /// The factor by which a set of positions at the end becomes wider, the one that does most, once
-    /// X0 has grown in each state as first samples need it, and then U by a factor.
+    /// The factor by which a set of positions at the end becomes wider, the one that does most,
+    /// once X0 has grown in each state as first samples need it, and then U by a factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wider: Option<f64>,
     /// Cost of these sets once both have grown by `growth`.

@@ -20,7 +20,8 @@ pub struct Growth {
     pub both_sets: Option<f64>,
     /// For each part, the factor by which its set of positions at the end becomes wider once X0 has
     /// grown in each state of the part as first samples need it, and then U by a factor, so that
-    /// the values of the part are enclosed; of a linear model. `None` if
+    /// the values of the part are enclosed, or both sets by one factor, whichever is less; of a
+    /// linear model. `None` if
     /// no factors suffice.
     pub parts: Vec<Option<f64>>,
     /// What the radii of V in all positions would have to grow by, rad or m.
@@ -41,10 +42,13 @@ impl Growth {
         let (n, input_only) = (problem.inputs(), problem.settings().nominal.is_measured());
         let wider = |program: &Program, part: usize| {
             let is_own = |state: usize| state % n == part;
-            Some(program.wider(from_ref(program), sets, input_only, is_own)?[part])
+            program.wider(from_ref(program), sets, input_only, is_own).map(|wider| wider[part])
         };
-        let parts = (0..n).map(|part| program.as_ref().and_then(|program| wider(program, part)));
-        let parts = parts.collect();
+        let least = |part: usize| {
+            let own = program.as_ref().and_then(|program| wider(program, part));
+            [own, both_sets].into_iter().flatten().reduce(f64::min)
+        };
+        let parts = (0..n).map(least).collect();
         let (noise_position, noise_velocity) = (largest(positions), largest(velocities));
         Ok(Self { initial_set, input_set, both_sets, parts, noise_position, noise_velocity })
     }

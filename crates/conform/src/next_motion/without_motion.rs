@@ -42,11 +42,11 @@ impl LeftOut {
         Self { motion: motion.into(), rows, ..Self::default() }
     }
 
-    /// Returns by which factor sets become wider that enclose the motion: [`wider`](Self::wider)
-    /// where it is known, and [`gauge`](Self::gauge) otherwise; infinite if no factor suffices.
+    /// Returns by which factor sets become wider that enclose the motion, the least that is known:
+    /// [`wider`](Self::wider) or [`gauge`](Self::gauge). Infinite if no factor suffices.
     #[must_use]
     pub fn growth(&self) -> f64 {
-        self.wider.or(self.gauge).unwrap_or(f64::INFINITY)
+        [self.wider, self.gauge].into_iter().flatten().fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -210,8 +210,8 @@ impl Program<'_> {
         row.excess > SAME_STATE && self.is_violated(row)
     }
 
-    /// Returns the factor of given radii with which the rows of given samples and states hold, up to
-    /// rounding; `None` if no factor suffices.
+    /// Returns the factor of given radii with which the rows of given samples and states hold, up
+    /// to rounding; `None` if no factor suffices.
     fn factor(
         &self,
         sets: &UncertaintySets,

@@ -96,9 +96,9 @@ impl Tube {
         all
     }
 
-    /// Returns the smallest and the largest radius of the hull in a state at the end of a recording,
-    /// with the noise set; infinite where a reachable set ends early. Of recordings on one grid they
-    /// differ where U grows with the nominal motion.
+    /// Returns the smallest and the largest radius of the hull in a state at the end of a
+    /// recording, with the noise set; infinite where a reachable set ends early. They differ on one
+    /// grid where U grows with the nominal motion.
     #[must_use]
     pub fn range_at_end(&self, state: usize) -> [f64; 2] {
         let strands = (0..).zip(&self.strands);

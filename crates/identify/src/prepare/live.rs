@@ -263,7 +263,7 @@ impl LiveFilter {
         told.take(&row[..2 * n]);
     }
 
-    /// Returns what was told of the sample that was completed last.
+    /// Returns the state that the samples up to the one that was completed last tell.
     fn told(&self) -> &[f64] {
         self.told.all().map_or(&[], |rows| &rows[..self.told.width])
     }
