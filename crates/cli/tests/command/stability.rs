@@ -54,8 +54,8 @@ fn rewrite(lab: &Lab, data: &str, (_, kept): Loss) -> Vec<String> {
     names
 }
 
-/// Asserts that `model` keeps its exit code and its horizon, and nearly its widths, if the logs
-/// come 1 ns later, in reverse order, and lose rows.
+/// Asserts that `model` keeps its exit code and its horizon, and nearly the widths of an accepted
+/// model, if the logs come 1 ns later, in reverse order, and lose rows.
 fn hardly_changes(robot: &str, data: &str, torque: &str, losses: &[Loss]) {
     let (lab, data) = (Lab::new(), format!("{DATA}/{data}"));
     let model = |logs: &str| -> (Run, Value) {
@@ -80,14 +80,14 @@ fn hardly_changes(robot: &str, data: &str, torque: &str, losses: &[Loss]) {
         let changes: Vec<f64> = before.iter().zip(&after).map(change).collect();
         assert_eq!(before.len(), after.len());
         let is_small = |change: &f64| change.abs() < LARGEST_CHANGE;
-        assert!(changes.iter().all(is_small), "{what}: {changes:?}");
+        let is_refused = whole.code != 0;
+        assert!(is_refused || changes.iter().all(is_small), "{what}: {changes:?}");
     }
 }
 
-/// Half the motion is accepted, and at 0.7 s the widest set of some windows is 51 % of it. Without
-/// the first percent it is 44 %, and the model is useful up to there in place of 0.5 s. So widths
-/// are compared at a horizon that is given; at 0.5 s, where there are fewer windows, one of them
-/// changes by 10.2 %.
+/// Half the motion is accepted, and at 0.5 s the widest set of all windows is 52 % of it. Without
+/// the first percent, sets are narrower there, and the model is useful up to 0.7 s in place of 0.3
+/// s. So widths are compared at a horizon that is given.
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn a_model_of_the_ur10e_hardly_changes_with_its_logs() {
@@ -105,7 +105,7 @@ fn a_model_of_the_double_pendulum_hardly_changes_with_its_logs() {
     hardly_changes(&robot, "double_pendulum/openloop", "motor", &losses);
 }
 
-/// The Panda has a single log, and its model is refused.
+/// The Panda has a single log, and its model is refused: the widest set is 788 % of the motion.
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn a_model_of_the_panda_hardly_changes_with_its_log() {
