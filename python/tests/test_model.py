@@ -79,7 +79,7 @@ class OfFiles:
 
 @pytest.fixture(scope="module")
 def of_files(
-    arm: rt.Robot, logs: list[rt.Run], tmp_path_factory: pytest.TempPathFactory
+    arm: rt.Robot, logs: list[rt.Run], choices: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> OfFiles:
     place, told = tmp_path_factory.mktemp("files"), list[str]()
     folder, file = place / "logs", place / "arm.toml"
@@ -96,6 +96,7 @@ def of_files(
             folder,
             "motor",
             horizon=0.1,
+            settings=choices,
             progress=lambda done, total, sentences: told.extend(sentences),
         )
     return OfFiles(file, folder, found, told)
