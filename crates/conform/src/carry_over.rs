@@ -4,7 +4,7 @@ use crate::data::problem::Problem;
 use crate::error::{Error, Result};
 use crate::fit::fit::fitted_setup;
 use crate::fit::group::FitSettings;
-use crate::next_motion::allowance::factors_for;
+use crate::next_motion::allowance::factor_for;
 use crate::next_motion::left_out::leave_out;
 use crate::next_motion::motions::Motions;
 use crate::next_motion::point_gauge::leave_points_out;
@@ -17,10 +17,9 @@ use crate::progress::Progress;
 ///
 /// The robot of the problem, and the inputs that were computed with it, must not have seen the
 /// motion either: identify the robot without it first. The comparison is a description, computed in
-/// floating point. It bounds no probability. Returns two factors of `allowance` too, radii of X0
-/// and U, 3n. Once the radii of X0 times the first factor and the radii of U times the second are
-/// added, these sets enclose the motion. `None` if no factors suffice, and for a notion that asks
-/// points.
+/// floating point. It bounds no probability. Returns the factor of `allowance` too, radii of X0 and
+/// U, 3n, that encloses the motion once it is added to these sets; `None` if no factor does, and
+/// for a notion that asks points.
 ///
 /// # Errors
 ///
@@ -32,7 +31,7 @@ pub fn carry_over(
     settings: Option<&FitSettings>,
     allowance: &[f64],
     progress: &dyn Progress,
-) -> Result<(LeftOut, Option<[f64; 2]>)> {
+) -> Result<(LeftOut, Option<f64>)> {
     let motions = Motions::new(problem.recordings());
     let all = motions.distinct();
     if !all.contains(&motion) || all.len() < 2 {
@@ -51,5 +50,5 @@ pub fn carry_over(
         return Ok((leave_points_out(&problem, motion)?, None));
     }
     let (left_out, missing) = leave_out(&problem, motion)?;
-    Ok((left_out, missing.and_then(|missing| factors_for(&missing, allowance, problem.states()))))
+    Ok((left_out, missing.and_then(|missing| factor_for(&missing, allowance))))
 }

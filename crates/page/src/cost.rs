@@ -174,7 +174,7 @@ fn without_each(left_out: &[LeftOut], smallest: Option<f64>, unit: &str) -> Tabl
         row.extend(smallest.map(|smallest| change(*without, smallest)));
         row.push(factor(left.gauge));
         if in_turn {
-            row.extend([factor(left.initial_gauge), factor(left.input_gauge)]);
+            row.extend([left.initial_gauge, left.input_gauge, left.wider].map(factor));
         }
         row
     };
@@ -182,7 +182,7 @@ fn without_each(left_out: &[LeftOut], smallest: Option<f64>, unit: &str) -> Tabl
     header.extend(smallest.map(|_| "Change".into()));
     header.push("Factor".into());
     if in_turn {
-        header.extend(["X0 at start", "Then U"].map(String::from));
+        header.extend(["X0 at start", "Then U", "Sets wider"].map(String::from));
     }
     let rows = motions.iter().take(MOST_ROWS).map(row).collect();
     Table { header, rows, ..Table::default() }

@@ -3,11 +3,10 @@
 //! The smallest sets enclose what was recorded and nothing more. Each motion is left out in turn,
 //! and the sets of the others say how far it leaves them. If that is half again what is accepted of
 //! motions that are held out, or more, radii are added to the sets, before the held-out motions are
-//! looked at: the least factor of X0, and then of the input's error, that covers all motions that
-//! were left out, and that one more motion exceeds with a probability of 5 % at most, if motions
-//! need factors of one normal distribution. From what is accepted to half again that, a part of
-//! these radii is added that grows from none to all, so that a sample more or less cannot make the
-//! sets jump.
+//! looked at: the least factor of X0 and the input's error that covers all motions that were left
+//! out, and that one more motion needs with a probability of 5 % at most, if motions need factors
+//! of one normal distribution. From what is accepted to half again that, a part of these radii is
+//! added that grows from none to all, so that a sample more or less cannot make the sets jump.
 
 use reachtube_conform::Answer;
 use reachtube_conform::next_motion::LeftOut;
@@ -129,27 +128,24 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
         let accepted = format!("at most {} % and {} are accepted", 100.0 * most[0], most[1]);
         return (Vec::new(), format!("{leave}; {accepted}"), None);
     }
-    let factors: Option<Vec<[f64; 2]>> = all.iter().map(|unseen| unseen.factors).collect();
+    let factors: Option<Vec<f64>> = all.iter().map(|unseen| unseen.factor).collect();
     let Some((factors, needed)) = factors.zip(answer.found.allowance_needed.as_ref()) else {
-        let without = all.iter().find(|unseen| unseen.factors.is_none());
+        let without = all.iter().find(|unseen| unseen.factor.is_none());
         let finding = without.map(|unseen| not_enclosed(&unseen.left_out));
         return (Vec::new(), format!("{leave}; no allowance encloses them"), finding);
     };
-    let of = |part: usize| factors.iter().map(|factors| factors[part]).collect::<Vec<f64>>();
-    let [initial, input] = [0, 1].map(|part| upper_bound(&of(part)));
-    let states = 2 * answer.model.signals.parts.len();
-    let (of_start, of_input) = needed.shape.split_at(states);
-    let start = of_start.iter().map(|radius| initial * radius);
-    let radii = start.chain(of_input.iter().map(|radius| input * radius));
-    let allowance = radii.map(|radius| rounded_up(share * radius, 3)).collect();
-    let largest = of(1).into_iter().fold(0.0, f64::max);
+    let factor = upper_bound(&factors);
+    let radius = |radius: &f64| rounded_up(share * factor * radius, 3);
+    let allowance: Vec<f64> = needed.shape.iter().map(radius).collect();
+    let largest = factors.iter().copied().fold(0.0, f64::max);
+    let starts = match allowance.first() {
+        Some(radius) if *radius > 0.0 => "X0 and ",
+        _ => "",
+    };
     let mut reason = format!(
-        "{leave}; they need up to {largest:.2} times the error of the input, and {input:.2} times \
-         is the bound at 95 % for one more"
+        "{leave}; they need up to {largest:.2} times {starts}the error of the input, and \
+         {factor:.2} times is the bound at 95 % for one more"
     );
-    if initial > 0.0 {
-        reason += &format!("; their starts ask X0 wider by {:.0} %", 100.0 * initial);
-    }
     if share < 1.0 {
         reason += &format!(
             "; {:.0} % of that is added, as the limits are exceeded by less than half",
@@ -246,7 +242,7 @@ mod tests {
     fn a_motion_that_no_allowance_encloses_is_named() {
         let answer = answer(&pendulum(), NominalStart::Own, &[("a", 0.1), ("b", 0.2), ("c", 0.3)]);
         let mut left_out = unseen(&answer);
-        left_out[1].factors = None;
+        left_out[1].factor = None;
         let (allowance, reason, finding) = asked(&answer, &left_out, [0.0, f64::INFINITY]);
         assert!(allowance.is_empty() && reason.ends_with("no allowance encloses them"), "{reason}");
         let finding = finding.unwrap();
@@ -270,7 +266,7 @@ mod tests {
             assert_eq!(finding, None);
             let is_limited = nominal == NominalStart::Own;
             assert!(allowance[..2].iter().all(|radius| (*radius == 0.0) == is_limited));
-            assert_eq!(reason.contains("X0 wider by"), !is_limited, "{reason}");
+            assert_eq!(reason.contains("X0 and the error"), !is_limited, "{reason}");
             assert!(allowance[2] > 0.01, "{allowance:?}, {reason}");
             let mut outside = 0;
             for left_out in 0..all.len() {

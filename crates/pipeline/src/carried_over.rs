@@ -24,9 +24,8 @@ const MOST_MOTIONS: usize = 60;
 pub(crate) struct Unseen {
     /// Its position relative to the sets of the others.
     pub left_out: LeftOut,
-    /// The factors of the allowance's shape, of X0 and of U, with which these sets enclose it;
-    /// `None` if none do.
-    pub factors: Option<[f64; 2]>,
+    /// The factor of the allowance's shape with which these sets enclose it; `None` if none does.
+    pub factor: Option<f64>,
 }
 
 impl Evidence<'_> {
@@ -106,7 +105,7 @@ impl Trial<'_> {
                 if !wanted.contains(&*motion) {
                     continue;
                 }
-                let (left_out, factors) = self.journal.step(&name(&motion), || {
+                let (left_out, factor) = self.journal.step(&name(&motion), || {
                     if problem.is_none() {
                         problem = Some(trial.read(recordings.cut(horizon, usize::MAX)?)?);
                     }
@@ -115,7 +114,7 @@ impl Trial<'_> {
                     carry_over(problem, &motion, fit.as_ref(), shape, &observer)
                         .map_err(Error::from)
                 })?;
-                *unseen = Unseen { left_out, factors };
+                *unseen = Unseen { left_out, factor };
             }
         }
         Ok(all)
@@ -125,7 +124,7 @@ impl Trial<'_> {
 /// Returns how each motion lies to the sets of the others, as the answer has it.
 pub(crate) fn unseen(answer: &Answer) -> Vec<Unseen> {
     let factors = answer.found.allowance_needed.as_ref().map(|needed| &needed.factors);
-    let of = |motion: usize| factors.and_then(|factors| factors[motion]);
+    let factor = |motion: usize| factors.and_then(|factors| factors[motion]);
     let all = answer.found.left_out.iter().cloned().enumerate();
-    all.map(|(motion, left_out)| Unseen { left_out, factors: of(motion) }).collect()
+    all.map(|(motion, left_out)| Unseen { left_out, factor: factor(motion) }).collect()
 }

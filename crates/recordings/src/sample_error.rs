@@ -46,8 +46,8 @@ pub enum SampleError {
     },
     /// A motion starts where earlier samples tell, and they are unknown.
     #[error(
-        "the model's motions start where the samples before them tell; give samples as they are \
-         recorded, of which the model knows how they are prepared"
+        "the model's motions start where earlier samples tell, and the monitor was not told; call \
+         `tell` before each sample"
     )]
     NotTold,
 }

@@ -130,6 +130,8 @@ def _of_any_run(model, record):
 def _check_settings(settings):
     if settings.get("input_doubling") is not None:
         raise BadInput("its U grows with the nominal motion, which is not judged here")
+    if settings.get("nominal") == "past":
+        raise BadInput("its motions start where earlier samples tell, which is not judged here")
     choices = {
         "torque": ("compensated", "motor", "link"),
         "disturbance": ("constant", "sample", "measurable"),

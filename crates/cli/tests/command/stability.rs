@@ -16,8 +16,9 @@ const FIRST_ROW: Loss = ("the first row", |rows| 1..rows);
 const FIRST_PERCENT: Loss = ("the first percent", |rows| rows.div_ceil(100)..rows);
 const LAST_PERCENT: Loss = ("the last percent", |rows| 0..rows - rows.div_ceil(100));
 
-/// Largest part by which the width of a joint's set may change.
+/// Largest part by which the width of a joint's set may change, and the part where that is missed.
 const LARGEST_CHANGE: f64 = 0.1;
+const MISSED: f64 = 0.12;
 
 /// Returns the CSV files in a folder and its folders, sorted by name.
 fn csv_files(folder: &Path) -> Vec<PathBuf> {
@@ -54,9 +55,9 @@ fn rewrite(lab: &Lab, data: &str, (_, kept): Loss) -> Vec<String> {
     names
 }
 
-/// Asserts that `model` keeps its exit code and its horizon, and nearly the widths of an accepted
-/// model, if the logs come 1 ns later, in reverse order, and lose rows.
-fn hardly_changes(robot: &str, data: &str, torque: &str, losses: &[Loss]) {
+/// Asserts that `model` keeps its exit code and its horizon, and its widths but for a part `most`,
+/// if the logs come 1 ns later, in reverse order, and lose rows.
+fn hardly_changes(robot: &str, data: &str, torque: &str, losses: &[Loss], most: f64) {
     let (lab, data) = (Lab::new(), format!("{DATA}/{data}"));
     let model = |logs: &str| -> (Run, Value) {
         let line = format!("model --robot {robot} --data {logs} --torque {torque} --out arm");
@@ -79,21 +80,22 @@ fn hardly_changes(robot: &str, data: &str, torque: &str, losses: &[Loss]) {
         let change = |(before, after): (&f64, &f64)| after / before - 1.0;
         let changes: Vec<f64> = before.iter().zip(&after).map(change).collect();
         assert_eq!(before.len(), after.len());
-        let is_small = |change: &f64| change.abs() < LARGEST_CHANGE;
-        let is_refused = whole.code != 0;
-        assert!(is_refused || changes.iter().all(is_small), "{what}: {changes:?}");
+        let is_small = |change: &f64| change.abs() < most;
+        assert!(changes.iter().all(is_small), "{what}: {changes:?}");
     }
 }
 
-/// The first percent is not compared. Half the motion is accepted, and at 0.5 s the widest set of
-/// all windows is 52 % of it; without the first percent the model is useful up to 0.7 s in place of
-/// 0.3 s. At 0.3 s the narrowest set, 8 % of its joint's motion, becomes wider by 11.5 %.
+/// Half the motion is accepted, and at 0.7 s the widest set of some windows is 52 % of it. Without
+/// the first percent it is 45 % of all windows, and the model is useful up to there in place of
+/// 0.5 s. So widths are compared at a horizon that is given. The aim of 10 % is missed there: the
+/// narrowest set, 8 % of its joint's motion, becomes wider by 11.5 %, and others change by 5 %.
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn a_model_of_the_ur10e_hardly_changes_with_its_logs() {
     let robot = format!("{DATA}/ur10e/ur10e.urdf");
     let data = "ur10e/excitation";
-    hardly_changes(&robot, data, "motor", &[FIRST_ROW, LAST_PERCENT]);
+    hardly_changes(&robot, data, "motor", &[FIRST_ROW, LAST_PERCENT], LARGEST_CHANGE);
+    hardly_changes(&robot, data, "motor --horizon 0.3", &[FIRST_PERCENT], MISSED);
 }
 
 #[test]
@@ -101,16 +103,18 @@ fn a_model_of_the_ur10e_hardly_changes_with_its_logs() {
 fn a_model_of_the_double_pendulum_hardly_changes_with_its_logs() {
     let robot = format!("{DATA}/double_pendulum/acrobot.urdf");
     let losses = [FIRST_ROW, FIRST_PERCENT, LAST_PERCENT];
-    hardly_changes(&robot, "double_pendulum/openloop", "motor", &losses);
+    hardly_changes(&robot, "double_pendulum/openloop", "motor", &losses, LARGEST_CHANGE);
 }
 
-/// The Panda has a single log, and its model is refused: the widest set is 788 % of the motion.
+/// The Panda has a single log, and its model is refused: the widest set, of joint 7, is 732 % of
+/// the motion. Without the first percent it is narrower by 10.4 %, where 10 % is the aim.
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn a_model_of_the_panda_hardly_changes_with_its_log() {
     let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/identify/panda-robot.toml");
-    let losses = [FIRST_ROW, FIRST_PERCENT, LAST_PERCENT];
-    hardly_changes(robot, "panda/excitation", "link", &losses);
+    let data = "panda/excitation";
+    hardly_changes(robot, data, "link", &[FIRST_ROW, LAST_PERCENT], LARGEST_CHANGE);
+    hardly_changes(robot, data, "link", &[FIRST_PERCENT], MISSED);
 }
 
 /// The model is of the first 0.2 s, and the first percent of a log is up to a fifth of them.
@@ -118,5 +122,6 @@ fn a_model_of_the_panda_hardly_changes_with_its_log() {
 #[test]
 #[ignore = "needs the recordings in ../shared"]
 fn a_model_of_the_schunk_arm_hardly_changes_with_its_logs() {
-    hardly_changes("lwa4p", "schunk_lwa4p", "compensated", &[FIRST_ROW, LAST_PERCENT]);
+    let losses = [FIRST_ROW, LAST_PERCENT];
+    hardly_changes("lwa4p", "schunk_lwa4p", "compensated", &losses, LARGEST_CHANGE);
 }

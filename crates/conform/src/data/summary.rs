@@ -30,7 +30,7 @@ pub struct RunSummary {
     /// The first state, 2n.
     pub start: Vec<f64>,
     /// What the samples up to the first one tell of it, 2n; empty if there are none.
-    pub(crate) known: Vec<f64>,
+    pub(crate) told_start: Vec<f64>,
     /// Some of its states; none if the run is not drawn from a suite of more than 256.
     pub(crate) marks: Marks,
     /// The conditions that friction may depend on.
@@ -65,7 +65,7 @@ impl RunSummary {
             duration: grid.times().get(end).copied().unwrap_or(0.0),
             grid,
             start: run.state(0).to_vec(),
-            known: run.before.get(..run.dimension()).unwrap_or_default().to_vec(),
+            told_start: run.before.get(..run.dimension()).unwrap_or_default().to_vec(),
             marks: Marks::new(run),
             condition: Condition::of(entry.order, run),
             sha256: run.sha256.clone(),
@@ -89,7 +89,7 @@ impl RunSummary {
     pub(crate) fn is_valid_for(&self, dimension: usize) -> bool {
         let temperatures = self.condition.temperatures.as_ref();
         self.start.len() == dimension
-            && (self.known.is_empty() || self.known.len() == dimension)
+            && (self.told_start.is_empty() || self.told_start.len() == dimension)
             && self.marks.is_valid_for(dimension)
             && self.noise.as_ref().is_none_or(|noise| noise.len() == dimension)
             && temperatures.is_none_or(|all| 2 * all.len() == dimension)

@@ -33,10 +33,9 @@ pub struct AllowanceNeeded {
     /// of the input, and the radii of X0 to X0; these are 0 where the noise of the sensors limits
     /// X0.
     pub shape: Vec<f64>,
-    /// The factors of `shape`, for each motion, with which the sets of the others enclose it: the
-    /// factor of its radii of X0, which first samples need, and then the factor of its radii of U;
-    /// 0 if they do without. `None` if no factors suffice.
-    pub factors: Vec<Option<[f64; 2]>>,
+    /// The factor of `shape`, for each motion, with which the sets of the others enclose it: 0 if
+    /// they do without. `None` if no factor suffices.
+    pub factors: Vec<Option<f64>>,
 }
 
 impl AllowanceNeeded {
@@ -53,27 +52,15 @@ impl AllowanceNeeded {
             false => sets.initial_set.radius.clone(),
         };
         let shape = [&starts[..], input_error].concat();
-        let states = starts.len();
-        let factors = missing.iter().map(|missing| factors_for(missing, &shape, states)).collect();
+        let factors = missing.iter().map(|missing| factor_for(missing, &shape)).collect();
         Self { shape, factors }
     }
 }
 
-/// Returns the factors of a shape that rows need which are missed, the radii of X0 first, `states`
-/// of them: of X0 for rows of first samples, where U has no effect yet, and then of U for all other
-/// rows. `None` if no factors suffice.
-pub(crate) fn factors_for(missing: &Missing, shape: &[f64], states: usize) -> Option<[f64; 2]> {
-    let (of_start, of_input) = shape.split_at(states);
-    let rows = |is_first: bool| {
-        let own = missing.iter().filter(move |((_, k, _), _)| (*k == 0) == is_first);
-        own.map(|(_, (excess, gains))| (excess, gains.split_at(states)))
-    };
-    let needed = |(excess, (gains, _)): (&f64, (&[f64], &[f64]))| excess / dot(gains, of_start);
-    let initial = rows(true).map(needed).fold(0.0, f64::max);
-    let needed = |(excess, (gains, of_rest)): (&f64, (&[f64], &[f64]))| {
-        let rest = excess - initial * dot(gains, of_start);
-        if rest > 0.0 { rest / dot(of_rest, of_input) } else { 0.0 }
-    };
-    let input = rows(false).map(needed).fold(0.0, f64::max);
-    (initial.is_finite() && input.is_finite()).then_some([initial, input])
+/// Returns the factor of `shape`, 3n, with which wider sets cover all rows that are missing; `None`
+/// if none suffices.
+pub(crate) fn factor_for(missing: &Missing, shape: &[f64]) -> Option<f64> {
+    let needed = |(excess, gains): &(f64, Vec<f64>)| excess / dot(gains, shape);
+    let factor = missing.values().map(needed).fold(0.0, f64::max);
+    factor.is_finite().then_some(factor)
 }

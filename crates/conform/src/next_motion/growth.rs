@@ -18,11 +18,10 @@ pub struct Growth {
     pub input_set: Option<f64>,
     /// Factor of all radii of X0 and U, for a linear model. `None` if no factor suffices.
     pub both_sets: Option<f64>,
-    /// For each part, the factor by which its set of positions at the end becomes wider once X0 has
-    /// grown in each state of the part as first samples need it, and then U by a factor, so that
-    /// the values of the part are enclosed, or both sets by one factor, whichever is less; of a
-    /// linear model. `None` if
-    /// no factors suffice.
+    /// For each part, the factor by which its set of positions at the end becomes wider so that the
+    /// values of the part are enclosed: once X0 has grown in each state as first samples need it,
+    /// and then U by a factor, or both sets by one factor, whichever is less; of a linear model.
+    /// `None` if no factors suffice.
     pub parts: Vec<Option<f64>>,
     /// What the radii of V in all positions would have to grow by, rad or m.
     pub noise_position: f64,

@@ -100,7 +100,7 @@ impl Problem {
         let start = match self.settings().nominal {
             NominalStart::Mean => suite.nominal_start.clone(),
             NominalStart::Own => recorded.state(0).to_vec(),
-            NominalStart::Past => summary.known.clone(),
+            NominalStart::Past => summary.told_start.clone(),
         };
         let name = format!("suite {}, run {}", suite.entry.name, self.entry(run).file);
         let measured = Arc::new(measured);

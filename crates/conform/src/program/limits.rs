@@ -45,7 +45,7 @@ impl Problem {
         let is_past = self.settings().nominal == NominalStart::Past;
         for suite in &self.read.recordings.suites {
             for run in suite.runs.iter().filter(|_| is_past) {
-                let starts = run.start.iter().zip(&run.known);
+                let starts = run.start.iter().zip(&run.told_start);
                 for (far, (start, known)) in farthest.iter_mut().zip(starts) {
                     *far = far.max((start - known).abs());
                 }

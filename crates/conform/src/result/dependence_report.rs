@@ -54,14 +54,14 @@ fn table_of_left_out(model: &Model) -> Table {
             times(left.gauge),
         ];
         if in_turn {
-            row.extend([left.initial_gauge, left.input_gauge].map(times));
+            row.extend([left.initial_gauge, left.input_gauge, left.wider].map(times));
         }
         row
     };
     let cost = if is_linear { "cost of the sets" } else { "cost of the linearised sets" };
     let mut header = vec!["without motion", cost, "its rows outside", "factor needed"];
     if in_turn {
-        header.extend(["X0 at start", "then U"]);
+        header.extend(["X0 at start", "then U", "sets wider"]);
     }
     Table::new(header, all.iter().map(row).collect()).cut_to(MOST_MOTIONS)
 }

@@ -190,7 +190,7 @@ impl LiveFilter {
         let zeros = || vec![0.0; n];
         let delay = slope.len() / 2 + weights.len() / 2;
         Ok(Self {
-            past: Past::new(0.5 / cut_off, step, !differentiates),
+            past: Past::new(cut_off, step, !differentiates),
             told: Rows::new(2 * n, delay + 1),
             step,
             raw: Rows::new(3 * n, slope.len()),

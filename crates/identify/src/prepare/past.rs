@@ -1,5 +1,9 @@
 use nalgebra::DMatrix;
 
+/// Periods of the cut-off over which samples tell the state at the last of them. Over fewer, noise
+/// decides, and over more, what a parabola does not follow.
+const PERIODS: f64 = 0.5;
+
 /// Samples that an estimate needs at least.
 const FEWEST: usize = 5;
 
@@ -16,9 +20,10 @@ pub(super) struct Past {
 }
 
 impl Past {
-    /// Makes the estimate from `span` \[s\] of samples that are `step` \[s\] apart.
-    pub(super) fn new(span: f64, step: f64, has_velocities: bool) -> Self {
-        let count = ((span / step).round() as usize + 1).max(FEWEST);
+    /// Makes the estimate for a low-pass of cut-off `cut_off` \[Hz\], of samples that are `step`
+    /// \[s\] apart.
+    pub(super) fn new(cut_off: f64, step: f64, has_velocities: bool) -> Self {
+        let count = ((PERIODS / (cut_off * step)).round() as usize + 1).max(FEWEST);
         let degree = if has_velocities { 2 } else { 3 };
         let time = |k: usize| (k + 1) as f64 - count as f64;
         let powers = DMatrix::from_fn(count, degree + 1, |k, power| time(k).powi(power as i32));
@@ -69,7 +74,7 @@ mod tests {
         let q: Vec<f64> = (0..30).map(position).collect();
         let qd: Vec<f64> = (0..30).map(velocity).collect();
         for has_velocities in [false, true] {
-            let past = Past::new(0.17, step, has_velocities);
+            let past = Past::new(3.0, step, has_velocities);
             let first = q.len() - past.samples();
             let found = past.at_last(|k| q[first + k], |k| qd[first + k]);
             for (found, known) in found.iter().zip([q[29], qd[29], 1.0 + 18.0 * at(29)]) {

@@ -170,7 +170,7 @@ pub(crate) fn prepare_one(
     };
     let gains = settings.gain_of_each_joint(raw.run.joints)?;
     let mut log = signals.log(&gains, differentiated);
-    log.before = signals.before(0.5 / cut_off, differentiated);
+    log.before = signals.before(cut_off, differentiated);
     if let Some(robot) = compensated {
         signals.compensate(&mut log, robot);
     }

@@ -48,11 +48,11 @@ impl<'a> Signals<'a> {
         Lag::contradict(&lags, self.step)
     }
 
-    /// Returns positions, velocities and accelerations as far as the last `span` \[s\] alone tells,
-    /// K x 3n; 0 where a recording is not as long yet.
-    pub(super) fn before(&self, span: f64, differentiated: bool) -> Vec<f64> {
+    /// Returns positions, velocities and accelerations as far as the samples up to each one alone
+    /// tell, K x 3n; 0 where a recording is not as long yet. `cut_off` is the low-pass's \[Hz\].
+    pub(super) fn before(&self, cut_off: f64, differentiated: bool) -> Vec<f64> {
         let n = self.raw.run.joints;
-        let past = Past::new(span, self.step, !differentiated);
+        let past = Past::new(cut_off, self.step, !differentiated);
         let mut rows = Vec::new();
         for joint in 0..n {
             let q = self.even(Run::q, joint);
