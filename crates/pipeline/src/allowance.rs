@@ -98,7 +98,9 @@ impl Widened {
         let of_input = self.allowance.iter().skip(2 * joints.len()).copied().enumerate();
         match of_input.max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((joint, most)) => {
-                format!("U wider by up to {most:.2} N m ({})", joints[joint].name)
+                let has_starts = self.allowance[0] > 0.0;
+                let what = if has_starts { "X0 and U wider, U by" } else { "U wider by" };
+                format!("{what} up to {most:.2} N m ({})", joints[joint].name)
             }
             None => "none".into(),
         }
@@ -136,12 +138,9 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     };
     let factor = upper_bound(&factors);
     let radius = |radius: &f64| rounded_up(share * factor * radius, 3);
-    let allowance: Vec<f64> = needed.shape.iter().map(radius).collect();
+    let allowance = needed.shape.iter().map(radius).collect();
     let largest = factors.iter().copied().fold(0.0, f64::max);
-    let starts = match allowance.first() {
-        Some(radius) if *radius > 0.0 => "X0 and ",
-        _ => "",
-    };
+    let starts = if needed.shape[0] > 0.0 { "X0 and " } else { "" };
     let mut reason = format!(
         "{leave}; they need up to {largest:.2} times {starts}the error of the input, and \
          {factor:.2} times is the bound at 95 % for one more"
