@@ -271,12 +271,13 @@ def test_parquet_files_give_the_sets_of_their_runs(
 @pytest.mark.filterwarnings("ignore::reachtube.ReachtubeWarning")
 @pytest.mark.skipif("REACHTUBE" not in os.environ, reason="needs the command")
 def test_the_files_are_those_of_the_command_byte_for_byte(
-    of_files: OfFiles, tmp_path: Path
+    of_files: OfFiles, choices: Path, tmp_path: Path
 ) -> None:
     of_files.built.save(tmp_path / "python")
     command = [os.environ["REACHTUBE"], "model", "--robot", str(of_files.file)]
     command += ["--data", str(of_files.folder)]
-    command += ["--torque", "motor", "--horizon", "0.1", "--out", str(tmp_path / "command")]
+    command += ["--torque", "motor", "--horizon", "0.1", "--settings", str(choices)]
+    command += ["--out", str(tmp_path / "command")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     # 3 says that the model is not accepted.
     assert done.returncode in (0, 3), done.stderr
