@@ -155,7 +155,6 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
 }
 
-/// Returns the name of a joint that may come to rest.
 fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
     &model.signals.parts[rest.part - 1].name
 }

@@ -141,7 +141,6 @@ fn description(robot: &Robot) -> String {
     )
 }
 
-/// Counts the joints of each kind.
 fn joint_counts(robot: &Robot) -> String {
     let kinds = robot.kinds();
     let count = |kind: JointKind| {
@@ -152,7 +151,6 @@ fn joint_counts(robot: &Robot) -> String {
     counts.collect::<Vec<_>>().join(" and ")
 }
 
-/// Names the joints that are held at a position.
 fn locked(robot: &Robot) -> String {
     let held = |joint: &LockedJoint| {
         format!("{} = {} {}", joint.name, six_digits(joint.position), joint.kind.position_unit())
