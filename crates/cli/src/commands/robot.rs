@@ -13,8 +13,7 @@ use crate::expansion::expansion_point;
 use crate::lock_arguments::LockArguments;
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::table;
-use reachtube::finding::Units;
+use reachtube::finding::{Table, Units};
 use reachtube::number::{fixed, plural, six_digits};
 
 const HELP: &str = "\
@@ -136,8 +135,8 @@ fn description(robot: &Robot) -> String {
         robot.name(),
         joint_counts(robot),
         locked(robot),
-        table(&joint_header, &joints),
-        table(&link_header, &links)
+        Table::new(joint_header, joints),
+        Table::new(link_header, links)
     )
 }
 
