@@ -31,17 +31,14 @@ pub(crate) const NO_TORQUE: &str = "the meaning of the recorded torques is not g
                                     file";
 
 impl Error {
-    /// Returns an error about the value of an option or a key.
     pub(crate) fn setting(problem: impl Into<String>) -> Self {
         Self::Given(ErrorKind::Setting, problem.into())
     }
 
-    /// Returns an error about the settings in a file.
     pub(crate) fn settings_file(path: &Path, problem: impl std::fmt::Display) -> Self {
         Self::setting(format!("{}: {problem}", path.display()))
     }
 
-    /// Returns an error about standard output.
     pub(crate) fn output(error: std::io::Error) -> Self {
         let problem = format!(
             "standard output: cannot write: {error}; make room or print elsewhere, and run the \

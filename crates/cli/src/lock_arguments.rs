@@ -17,7 +17,6 @@ pub(crate) struct LockArguments {
 }
 
 impl LockArguments {
-    /// Loads a robot by name or path.
     pub(crate) fn load(&self, robot: &str) -> Result<Robot> {
         Ok(Robot::load_locked(robot, &self.lock)?)
     }

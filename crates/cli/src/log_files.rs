@@ -38,7 +38,6 @@ pub(crate) struct LogArguments {
 }
 
 impl LogArguments {
-    /// Returns the settings of logs in MCAP and rosbag2.
     pub(crate) fn settings(&self) -> LogSettings {
         LogSettings {
             topic: self.topic.clone(),
@@ -49,7 +48,6 @@ impl LogArguments {
     }
 }
 
-/// Returns the times that an option names.
 pub(crate) fn log_time(name: Option<&str>) -> LogTime {
     if name == Some("log") { LogTime::Receipt } else { LogTime::Header }
 }

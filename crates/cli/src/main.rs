@@ -19,7 +19,6 @@ mod progress;
 mod reference;
 mod report_files;
 mod schema;
-mod table;
 mod understood;
 mod usage;
 mod virtual_robot_arguments;

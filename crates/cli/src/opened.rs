@@ -25,7 +25,6 @@ pub(crate) struct OpenedCheck {
 }
 
 impl OpenedCheck {
-    /// Returns the reachable sets.
     pub(crate) fn tube(&self) -> &Tube {
         &self.tube
     }
@@ -100,7 +99,6 @@ impl OpenedCheck {
         Ok(check.explained_by(unexplained_by_model(&self.model, &paths)?))
     }
 
-    /// Returns a check on a few lines.
     pub(crate) fn summary(&self, check: &Check) -> Summary {
         check.summary(&self.model, &self.tube, FrontEnd::CommandLine)
     }

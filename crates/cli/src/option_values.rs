@@ -27,7 +27,6 @@ pub(crate) const MODELS: Choices = &[
     ("3", "the whole forward dynamics, eq. (16)"),
 ];
 
-/// Parses a name and removes the space around it.
 pub(crate) fn trimmed(text: &str) -> Result<String, std::convert::Infallible> {
     Ok(text.trim().into())
 }
@@ -67,7 +66,6 @@ where
     explained(numbers).try_map(|number| serde_json::from_str::<T>(&number))
 }
 
-/// Parses one of a few names, each with its explanation.
 pub(crate) fn explained(values: Choices) -> PossibleValuesParser {
     let value = |&(name, help): &(_, _)| PossibleValue::new(name).help(help);
     PossibleValuesParser::new(values.iter().map(value).collect::<Vec<_>>())

@@ -17,7 +17,6 @@ pub(crate) enum Outcome {
 }
 
 impl Outcome {
-    /// Returns the outcome of a verdict.
     pub(crate) fn of(conformant: bool) -> Self {
         if conformant { Self::Done } else { Self::NotConformant }
     }

@@ -44,7 +44,6 @@ fn painted(word: &str, colour: AnsiColor) -> String {
     format!("{style}{word}{style:#}")
 }
 
-/// Writes bytes to standard output.
 pub(crate) fn write_out(bytes: &[u8]) -> Result<()> {
     written(std::io::stdout().lock(), bytes)
 }
@@ -56,7 +55,6 @@ fn written(mut out: impl Write, bytes: &[u8]) -> Result<()> {
     }
 }
 
-/// Prints a result as JSON.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string_pretty(value).expect("results have string keys");
     print_json_text(&(text + "\n"))
@@ -76,7 +74,6 @@ pub(crate) fn print_json_text(text: &str) -> Result<()> {
     }
 }
 
-/// Prints a result as JSON or as text.
 pub(crate) fn show(
     json: bool,
     value: &impl Serialize,
@@ -109,7 +106,6 @@ pub(crate) fn write_all<'a>(files: impl Iterator<Item = (&'a PathBuf, &'a [u8])>
     Ok(())
 }
 
-/// Reports a file that was written.
 pub(crate) fn wrote(path: &Path) {
     note(&format!("wrote {}", path.display()));
 }
@@ -128,7 +124,6 @@ pub(crate) fn detail(text: &str) {
     }
 }
 
-/// Prints a warning on standard error.
 pub(crate) fn warn(text: &str) {
     line("warning", text);
 }

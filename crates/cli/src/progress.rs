@@ -25,7 +25,6 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Shows progress in reading recordings.
     pub(crate) fn new() -> Self {
         Self::with("reading recordings", "the job")
     }
@@ -55,7 +54,6 @@ impl Progress {
         });
     }
 
-    /// Prints a note above the bar.
     pub(crate) fn note(&self, text: &str) {
         self.bar.suspend(|| output::note(text));
     }

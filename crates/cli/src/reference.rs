@@ -74,7 +74,6 @@ impl Shared {
         self.texts.contains(&text(arg))
     }
 
-    /// Appends the options.
     fn list(&self, page: &mut String) {
         self.texts.iter().for_each(|text| page.push_str(&wrap(text, "- ", "  ")));
     }
@@ -96,7 +95,6 @@ fn below_and_self(command: &Command) -> Vec<&Command> {
     std::iter::once(command).chain(below).collect()
 }
 
-/// Returns the options that are printed with a command.
 fn shown(command: &Command) -> impl Iterator<Item = &Arg> {
     command.get_arguments().filter(|arg| {
         let is_help = matches!(arg.get_id().as_str(), "help" | "version");
@@ -215,7 +213,6 @@ fn call(arg: &Arg) -> String {
     words
 }
 
-/// Returns the names of an option's values.
 fn values(arg: &Arg) -> String {
     let names = arg.get_value_names().unwrap_or_default().iter();
     let names: Vec<_> = names.map(|name| format!("<{name}>")).collect();
@@ -238,7 +235,6 @@ fn leave_a_blank_line(page: &mut String) {
     page.push_str("\n\n");
 }
 
-/// Joins the lines of a paragraph.
 fn joined(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

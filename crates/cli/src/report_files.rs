@@ -10,7 +10,6 @@ use reachtube::write;
 use crate::error::Result;
 use crate::output;
 
-/// Returns where the page is written in `folder`.
 pub(crate) fn page_in(folder: &Path) -> PathBuf {
     folder.join(PAGE_FILE)
 }

@@ -37,7 +37,6 @@ pub(crate) enum SchemaOf {
     Results,
 }
 
-/// Returns a schema.
 pub(crate) fn schema_of(what: SchemaOf) -> Value {
     match what {
         SchemaOf::Model => model_schema(),

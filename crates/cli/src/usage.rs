@@ -24,7 +24,6 @@ const CHOICES: &[&str] = &[
     "pull",
 ];
 
-/// Parses the command line.
 pub(crate) fn parse(line: &[OsString]) -> Result<Cli> {
     let mut command = help::command(line);
     let parsed = command.try_get_matches_from_mut(line);

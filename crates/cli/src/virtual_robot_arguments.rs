@@ -19,7 +19,6 @@ pub(crate) struct VirtualRobotArguments {
 }
 
 impl VirtualRobotArguments {
-    /// Returns the parameters.
     pub(crate) fn parameters(&self) -> Result<VirtualRobotParameters> {
         let Some(path) = &self.parameters else { return Ok(VirtualRobotParameters::default()) };
         let text = reachtube_files::read_text(path, REMEDY)?;

@@ -47,14 +47,12 @@ impl Contradiction {
         Self { number: Some(("angle", angle)), ..Self::new(text) }
     }
 
-    /// Torques of the opposite sign in all joints.
     pub(crate) fn all_opposite(joints: usize) -> Self {
         let text = "all recorded torques have the opposite sign of what the description needs";
         let remedy = ["gains".into(), vec!["-1"; joints].join(","), "turns them.".into()];
         Self { remedy: Some(remedy), ..Self::new(text.into()) }
     }
 
-    /// Torques of the opposite sign.
     pub(crate) fn opposite(robot: &Robot, joints: Vec<usize>) -> Self {
         let names = names(robot, &joints);
         let text = format!(
@@ -99,7 +97,6 @@ impl Contradiction {
         Self { number: Some(("factor", factor)), remedy, ..Self::new(text) }
     }
 
-    /// Torques that nothing explains.
     pub(crate) fn noise(rest: f64) -> Self {
         let text = format!(
             "neither the robot's links of any mass nor friction explain the recorded torques: \
@@ -111,7 +108,6 @@ impl Contradiction {
     }
 }
 
-/// Returns the names of joints.
 pub(crate) fn names(robot: &Robot, joints: &[usize]) -> String {
     let names = joints.iter().map(|joint| robot.joints()[*joint].name.as_str());
     names.collect::<Vec<_>>().join(", ")

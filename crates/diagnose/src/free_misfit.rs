@@ -97,7 +97,6 @@ impl Misfit for FreeMisfit<'_> {
 }
 
 impl Rows {
-    /// Returns the root mean square of the rows of each joint.
     fn sizes(&self, values: &DVector<f64>, joints: usize) -> Vec<f64> {
         let mut sums = vec![[0.0; 2]; joints];
         for (joint, value) in self.joints.iter().zip(values.iter()) {

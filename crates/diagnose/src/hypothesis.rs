@@ -107,7 +107,6 @@ impl Hypothesis {
         }
     }
 
-    /// Returns the size with its name.
     pub(crate) fn number(&self) -> Option<(&'static str, f64)> {
         let name = if matches!(self, Self::Lag(..)) { "lag" } else { "offset" };
         self.size().map(|size| (name, size))

@@ -67,7 +67,6 @@ impl Squares {
         Self { longest, halves }
     }
 
-    /// Returns the lag that leaves least.
     fn least(&self, halves: &[usize]) -> Option<usize> {
         let lags = 0..=2 * self.longest;
         lags.min_by(|a, b| self.score(halves, *a).total_cmp(&self.score(halves, *b)))
@@ -90,7 +89,6 @@ impl Squares {
         halves.iter().map(|half| self.halves[*half][lag][joint]).sum()
     }
 
-    /// Returns which part of the squares of a joint a lag leaves.
     fn part(&self, halves: &[usize], lag: usize, joint: usize) -> f64 {
         let without = self.of_joint(halves, self.longest, joint).max(f64::MIN_POSITIVE);
         self.of_joint(halves, lag, joint).max(f64::MIN_POSITIVE) / without

@@ -53,17 +53,14 @@ impl JointTerms {
     }
 }
 
-/// Returns the recorded torque as terms.
 pub(crate) fn recorded() -> Terms {
     unit(0)
 }
 
-/// Returns the torque of the described links' inertia as terms.
 pub(crate) fn inertia() -> Terms {
     unit(1)
 }
 
-/// Returns the torque of a gravitational acceleration as terms.
 pub(crate) fn gravity(acceleration: [f64; 3]) -> Terms {
     (0..3).map(|axis| unit(2 + axis) * acceleration[axis]).sum()
 }

@@ -89,7 +89,6 @@ impl Rows {
         Some(body)
     }
 
-    /// Returns the sum of the squares that a body leaves.
     fn missed(&self, body: &DVector<f64>) -> f64 {
         (&self.torques - &self.y * body).norm_squared()
     }

@@ -73,8 +73,6 @@ impl Fitted {
         Ok(Self { first, friction, known, inertia, saturating, description, found })
     }
 
-    /// Returns the gains of the joints, the offsets of their positions, and warnings about
-    /// implausible results.
     pub(crate) fn check(&self, robot: &Robot, inputs: &Inputs) -> Plausibility {
         check([robot, &self.known], &self.inertia, &self.friction, inputs)
     }

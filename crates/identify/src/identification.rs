@@ -80,18 +80,9 @@ pub fn identify(
     folder: &Path,
     progress: &dyn Fn(usize, usize),
 ) -> Result<Identification> {
-    settings.validate(robot.joint_count())?;
-    let model = &settings.model;
-    // Recordings, filtered and downsampled.
-    let mut inputs = Inputs::read(robot, settings, folder)?;
-    let given = robot.description();
-    let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
-    progress(1, STEPS);
-
-    // Gravity and friction in turn, then the inertial parameters.
-    let fitted = Fitted::new(robot, &inputs, model)?;
-    progress(2, STEPS);
-
+    let (given, model) = (robot.description(), &settings.model);
+    let (robot, mut inputs, fitted) = fitted(robot, settings, folder, progress)?;
+    let robot = &robot;
     let Plausibility { gains, offsets, warnings: implausible } = fitted.check(robot, &inputs);
     let sides = fitted.first.gravity.as_ref().map_or(&[][..], |gravity| &gravity.poses.sides);
     inputs.changes.extend(unknown_sides(sides, robot.joint_count()));
@@ -125,6 +116,23 @@ pub fn identify(
         warnings,
         implausible,
     })
+}
+
+/// Reads the recordings and fits gravity and friction in turn, then the inertial parameters. The
+/// robot that is returned first has the gravity of its links.
+fn fitted(
+    robot: &Robot,
+    settings: &IdentifySettings,
+    folder: &Path,
+    progress: &dyn Fn(usize, usize),
+) -> Result<(Robot, Inputs, Fitted)> {
+    settings.validate(robot.joint_count())?;
+    let inputs = Inputs::read(robot, settings, folder)?;
+    let robot = with_gravity_of_links(robot, settings.model.motor_inertia)?;
+    progress(1, STEPS);
+    let fitted = Fitted::new(&robot, &inputs, &settings.model)?;
+    progress(2, STEPS);
+    Ok((robot, inputs, fitted))
 }
 
 /// Gives a description the motors of the given one if torque was measured behind the gear, which
@@ -178,14 +186,10 @@ pub fn identify_unjudged(
     settings: &IdentifySettings,
     folder: &Path,
 ) -> Result<RobotDescription> {
-    settings.validate(robot.joint_count())?;
-    let (inputs, model) = (Inputs::read(robot, settings, folder)?, &settings.model);
-    let given = robot.description();
-    let robot = &with_gravity_of_links(robot, model.motor_inertia)?;
-    let fitted = Fitted::new(robot, &inputs, model)?;
+    let (_, inputs, fitted) = fitted(robot, settings, folder, &|_, _| ())?;
     let Fitted { first, friction, inertia, mut description, .. } = fitted;
     add_friction(&mut description, &inputs, &friction, &first.friction, &inertia);
-    keep_motors(&mut description, given, model);
+    keep_motors(&mut description, robot.description(), &settings.model);
     Ok(description)
 }
 

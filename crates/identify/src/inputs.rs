@@ -3,7 +3,7 @@ use crate::prepare::changes::described as described_changes;
 use crate::prepare::cut_off::chosen_cut_off;
 use crate::prepare::entry::LogEntry;
 use crate::prepare::log::PreparedLog;
-use crate::prepare::prepared::{common_step, prepare_one};
+use crate::prepare::prepared::prepare_one;
 use crate::prepare::read::{Source, sources};
 use crate::prepare::survey::{Survey, check_held_out};
 use crate::prepare::turns::missing_turns;
@@ -11,7 +11,7 @@ use crate::prepare::velocity::velocity_warnings;
 use crate::samples::{Sampling, most_samples};
 use crate::settings::IdentifySettings;
 use rayon::prelude::*;
-use reachtube_diagnose::Signals;
+use reachtube_diagnose::{Signals, median};
 use reachtube_robot::{JointKind, Robot};
 use std::path::Path;
 
@@ -81,7 +81,7 @@ impl Inputs {
         let all: Vec<&Survey> = surveys.iter().flatten().collect();
         let mut notes = turns(robot, &all, sources.iter_mut().flatten());
         notes.extend(all.iter().flat_map(|log| log.notes.clone()));
-        let common = common_step(all.iter().filter_map(|survey| survey.step).collect());
+        let common = median(all.iter().filter_map(|survey| survey.step)).unwrap_or(0.0);
         let strides = [1, 1, stride(&surveys[2]), stride(&surveys[3])];
         let (mut logs, mut changes) = (Vec::new(), Vec::new());
         let [mut samples, mut short] = [0; 2];

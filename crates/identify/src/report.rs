@@ -37,7 +37,6 @@ impl Identification {
         }
     }
 
-    /// Returns the names of the joints.
     fn names(&self) -> impl Iterator<Item = &str> {
         self.description.joints.iter().map(|joint| joint.name.as_str())
     }

@@ -67,7 +67,6 @@ impl Sampling {
         known.map_or(BEYOND_RECORDED * reached, |limit| limit.max(reached))
     }
 
-    /// Returns the speeds up to which the friction of the joints must rise \[rad/s\].
     pub(crate) fn velocity_limits(&self, robot: &Robot) -> Vec<f64> {
         (0..robot.joint_count()).map(|joint| self.velocity_limit(robot, joint)).collect()
     }

@@ -17,7 +17,6 @@ pub(crate) fn with_gravity_of_links(robot: &Robot, motor_inertia: bool) -> Resul
     Ok(Robot::from_description(&description)?)
 }
 
-/// Returns the robot with other friction, one entry per joint.
 pub(crate) fn with_friction(robot: &Robot, friction: &[FrictionDescription]) -> Result<Robot> {
     let mut description = robot.description().clone();
     for (joint, friction) in description.joints.iter_mut().zip(friction) {
@@ -36,7 +35,6 @@ pub(crate) fn with_parameters(
     Ok(Robot::from_description(&base.with_values(columns, values.as_slice())?)?)
 }
 
-/// Gives a description the gravity moments of a fitted robot.
 pub(crate) fn set_gravity_moments(description: &mut RobotDescription, fitted: &Robot) {
     let parameters = fitted.inertial_parameters();
     for (joint, link) in description.joints.iter_mut().zip(parameters.chunks_exact(PER_LINK)) {

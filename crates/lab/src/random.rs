@@ -5,7 +5,6 @@ pub(crate) use rand_xoshiro::rand_core::SeedableRng;
 
 use rand::{Rng, RngExt};
 
-/// Draws a number uniformly from \[low, high).
 pub(crate) fn uniform(random: &mut SplitMix64, low: f64, high: f64) -> f64 {
     low + (high - low) * random.random::<f64>()
 }

@@ -36,7 +36,6 @@ pub(super) fn sum_unit(model: &Model) -> String {
     }
 }
 
-/// Returns the tables of the shares of the joints, of the runs that decide, and of the motions.
 pub(super) fn cost_tables(model: &Model, figures: &[SuiteFigure]) -> Vec<Table> {
     let tables = [by_joint(model, figures), by_run(figures), by_motion(model)];
     tables.into_iter().filter(|table| !table.rows.is_empty()).collect()

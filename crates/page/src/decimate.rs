@@ -78,7 +78,6 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Returns the value of the drawn line at a time.
     fn drawn(line: &[Point], time: f64) -> f64 {
         let after = line.partition_point(|point| point.0 < time).clamp(1, line.len() - 1);
         let (a, b) = (line[after - 1], line[after]);

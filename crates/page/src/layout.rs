@@ -78,7 +78,6 @@ impl Layout {
         }
     }
 
-    /// Returns whether the plot of the state is the first of its row.
     pub(super) fn starts_row(&self, state: usize) -> bool {
         (state % self.joints).is_multiple_of(self.columns)
     }

@@ -66,7 +66,6 @@ fn is_shorter(model: &Model, until: f64) -> bool {
     model.usefulness.as_ref().is_some_and(|said| until < said.horizon)
 }
 
-/// Returns the horizon and the widest set.
 fn facts_of_sets(model: &Model) -> Vec<(String, String)> {
     let Some(said) = &model.usefulness else { return Vec::new() };
     let horizon = format!("{} s", significant(said.horizon, 3));

@@ -176,7 +176,6 @@ pub(super) fn draw(svg: &mut Svg, chart: &Chart, frame: &Frame) {
     }
 }
 
-/// Draws a ring; it is larger and red for a sample outside.
 pub(super) fn ring(svg: &mut Svg, mark: Mark, at: Place) {
     match mark {
         Mark::Outside => svg.ring(at, 6.0, RED, 2.0),

@@ -64,7 +64,6 @@ pub fn section(title: &str, body: &Markup) -> Markup {
     }
 }
 
-/// Returns the name by which a link finds the section of a title.
 pub(super) fn anchor(title: &str) -> String {
     title.to_lowercase().replace(' ', "-")
 }

@@ -36,7 +36,6 @@ pub enum DefectKind {
 }
 
 impl DefectKind {
-    /// Returns the kind of a gap of some length, s.
     #[must_use]
     pub(crate) fn gap(seconds: f64) -> Self {
         Self::Gap(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX))

@@ -49,7 +49,6 @@ reachtube_files::kinds!(Error {
 /// Number of suites that an error lists.
 const LISTED: usize = 20;
 
-/// Lists suites, the first of many.
 fn listed(suites: &[String]) -> String {
     match suites.len() {
         many if many > LISTED => format!("{}, .. ({many} suites)", suites[..LISTED].join(", ")),

@@ -253,7 +253,6 @@ impl JointSummary {
     }
 }
 
-/// Returns the difference of the largest and the smallest value.
 fn spread(values: &[f64]) -> f64 {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -66,7 +66,6 @@ impl Refusal {
     }
 }
 
-/// Adds the refusals of another recording.
 pub(crate) fn merge(all: &mut Vec<Refusal>, more: Vec<Refusal>) {
     more.into_iter().for_each(|refusal| add(all, refusal, 1));
 }

@@ -131,7 +131,6 @@ pub fn check_limits(path: &Path, run: &Run, axes: &[Axis]) -> Vec<Defect> {
     defects
 }
 
-/// Returns whether a joint (from 0) leaves its first position.
 fn moves(run: &Run, joint: usize) -> bool {
     (0..run.len()).any(|k| (run.q(k)[joint] - run.q(0)[joint]).abs() > MIN_MOTION)
 }

@@ -125,7 +125,6 @@ impl<S: Scalar> Sym3<S> {
         self.zz += b.zz.clone();
     }
 
-    /// Adds a bᵀ + b aᵀ.
     #[inline(always)]
     pub(crate) fn add_symmetric_product(&mut self, a: &Vec3<S>, b: &Vec3<S>) {
         let (xx, yy, zz) = (mul(&a.x, &b.x), mul(&a.y, &b.y), mul(&a.z, &b.z));

@@ -106,7 +106,6 @@ impl Robot {
         }
     }
 
-    /// Returns the gravity load of this robot.
     #[inline(always)]
     pub(crate) fn gravity_load<S: Scalar>(&self) -> GravityLoad<S> {
         let acceleration = self.base_acceleration();

@@ -5,7 +5,7 @@ use core::f64::consts::{PI, TAU};
 use core::fmt;
 use nalgebra::Vector3;
 use reachtube_finding::Units;
-use reachtube_scalar::Elementary;
+use reachtube_scalar::SineCosine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -133,7 +133,7 @@ impl JointKind {
 
     /// Returns the pair of functions of q that the dynamics takes: (sin q, cos q) of a revolute
     /// joint, and (q, 1) of a prismatic one. The dynamics does not read the 1.
-    pub fn sin_cos<S: Elementary>(self, q: &S) -> (S, S) {
+    pub fn sin_cos<S: SineCosine>(self, q: &S) -> (S, S) {
         match self {
             Self::Revolute => q.sin_cos(),
             Self::Prismatic => (q.clone(), S::one()),

@@ -107,7 +107,6 @@ impl Link {
         if along { force.z.clone() } else { moment.z.clone() }
     }
 
-    /// Returns the first and second moments.
     #[inline(always)]
     pub(crate) fn moments<S: Scalar>(&self) -> (Vec3<S>, Sym3<S>) {
         (Vec3::constant(self.first_moment), Sym3::constant(self.second_moments))

@@ -104,7 +104,6 @@ pub(crate) fn coriolis_of_slide<S: Scalar>(w: &Vec3<S>, qd: &S) -> Vec3<S> {
 }
 
 impl<S: Scalar> AccelerationGradient<S> {
-    /// Returns K r.
     #[inline(always)]
     pub(crate) fn times(&self, r: &Vec3<S>) -> Vec3<S> {
         let k = &self.0;
@@ -115,7 +114,6 @@ impl<S: Scalar> AccelerationGradient<S> {
         )
     }
 
-    /// Returns Kᵀ v.
     #[inline(always)]
     pub(crate) fn transposed_times(&self, v: &Vec3<S>) -> Vec3<S> {
         let k = &self.0;

@@ -87,7 +87,6 @@ impl<C: Scalar> PolynomialDynamics<C> {
         (0..n).map(matrix).collect()
     }
 
-    /// Returns ∂f/∂q_k.
     fn derivative(&self, f: &TaylorPolynomial<C>, k: usize) -> TaylorPolynomial<C> {
         if self.kinds[k] == JointKind::Prismatic {
             return f.derivative(k);

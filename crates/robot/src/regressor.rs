@@ -52,7 +52,6 @@ impl<'a> Regressor<'a> {
         }
     }
 
-    /// Returns the parameters, in the order of the columns.
     pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }

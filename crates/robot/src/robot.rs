@@ -8,7 +8,7 @@ use crate::joint_kind::JointKind;
 use crate::link::{Link, working_links};
 use crate::parameter::{Parameter, ParameterKind};
 use nalgebra::{Matrix3, Vector3};
-use reachtube_scalar::Elementary;
+use reachtube_scalar::SineCosine;
 
 /// The constants of a serial robot with revolute and prismatic joints. Scratch memory is kept
 /// separately, in a [`Workspace`](crate::Workspace).
@@ -101,7 +101,7 @@ impl Robot {
     /// # Panics
     ///
     /// Panics if the length of `q` is not the number of joints.
-    pub fn sin_cos<S: Elementary>(&self, q: &[S]) -> (Vec<S>, Vec<S>) {
+    pub fn sin_cos<S: SineCosine>(&self, q: &[S]) -> (Vec<S>, Vec<S>) {
         assert_eq!(q.len(), self.joint_count(), "`{}` takes one position per joint", self.name());
         self.joints.iter().zip(q).map(|(joint, q)| joint.kind.sin_cos(q)).unzip()
     }

@@ -5,8 +5,8 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use num_traits::{One, Zero};
 
 use crate::dispatch::{Dispatch, Kernel, vectorised};
-use crate::elementary::Elementary;
 use crate::powers::Powers;
+use crate::sine_cosine::SineCosine;
 
 /// A scalar of N independent `f64` lanes for SIMD instructions.
 ///
@@ -32,7 +32,7 @@ pub struct Lanes<const N: usize>([f64; N]);
 
 /// A scalar of one or more independent `f64`: `f64` itself and [`Lanes`].
 ///
-/// It adds functions of single lanes to [`Elementary`], for algorithms with branches.
+/// It adds functions of single lanes to [`SineCosine`], for algorithms with branches.
 ///
 /// # Examples
 ///
@@ -45,7 +45,7 @@ pub struct Lanes<const N: usize>([f64; N]);
 /// assert_eq!(sign(-3.0), -1.0);
 /// assert_eq!(sign(Lanes::new([-3.0, 5.0])), Lanes::new([-1.0, 1.0]));
 /// ```
-pub trait Lanewise: Elementary + Copy {
+pub trait Lanewise: SineCosine + Copy {
     /// The number of lanes, 1 or more.
     const LANES: usize;
 
@@ -101,26 +101,10 @@ impl<const N: usize> Lanewise for Lanes<N> {
     }
 }
 
-impl<const N: usize> Elementary for Lanes<N> {
-    fn sqrt(&self) -> Self {
-        self.map(f64::sqrt)
-    }
-
-    fn exp(&self) -> Self {
-        self.map(f64::exp)
-    }
-
-    fn ln(&self) -> Self {
-        self.map(f64::ln)
-    }
-
+impl<const N: usize> SineCosine for Lanes<N> {
     #[inline]
     fn sin_cos(&self) -> (Self, Self) {
         (self.map(f64::sin), self.map(f64::cos))
-    }
-
-    fn atan2(&self, x: &Self) -> Self {
-        self.zip(*x, f64::atan2)
     }
 }
 

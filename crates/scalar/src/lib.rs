@@ -2,7 +2,6 @@
 #![doc = include_str!("../README.md")]
 
 mod dispatch;
-mod elementary;
 mod exact_sum;
 mod interval;
 mod lanes;
@@ -10,16 +9,17 @@ pub mod number;
 mod powers;
 pub mod rounding;
 mod scalar;
+mod sine_cosine;
 mod taylor;
 mod taylor_model;
 
 pub use dispatch::{Dispatch, Kernel};
-pub use elementary::Elementary;
 pub use exact_sum::ExactSum;
 pub use interval::Interval;
 pub use lanes::{Lanes, Lanewise};
 pub use powers::Powers;
 pub use scalar::Scalar;
+pub use sine_cosine::SineCosine;
 pub use taylor::{
     MapWorkspace, PolynomialMap, TaylorPolynomial, TaylorSpace, TaylorSpaceError, TaylorTerm,
 };

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 use reachtube::abstraction::{ModelKind, PolynomialModel};
+use reachtube::finding::Table;
 use reachtube::write;
 use reachtube_robot::JointKind;
 use schemars::JsonSchema;
@@ -16,7 +17,6 @@ use crate::lock_arguments::LockArguments;
 use crate::option_values::{MODELS, numbered_choice};
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::table;
 
 const HELP: &str = "\
 Examples:
@@ -118,7 +118,7 @@ impl AbstractOutput {
 fn summary(model: &PolynomialModel, seconds: f64) -> String {
     let point = model.expansion_point();
     let unit = |unit| JointKind::column(model.joint_kinds(), unit).list();
-    let mut text = format!(
+    let text = format!(
         "model {} of order {} of {}, expanded about {} {}, {} {}, {} {}\n\
          {} states, degree {}, {} terms, computed in {}\n\n",
         u32::from(model.kind()),
@@ -135,9 +135,8 @@ fn summary(model: &PolynomialModel, seconds: f64) -> String {
         model.term_count(),
         duration(seconds)
     );
-    let rows: Vec<_> = (0..model.joints()).map(|joint| joint_row(model, joint)).collect();
-    text.push_str(&table(&["joint", "terms"], &rows));
-    text
+    let rows = (0..model.joints()).map(|joint| joint_row(model, joint)).collect();
+    text + &Table::new(["joint", "terms"], rows).to_string()
 }
 
 fn coordinates(name: &str, values: &[f64]) -> String {

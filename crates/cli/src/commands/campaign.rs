@@ -68,7 +68,6 @@ pub(crate) struct Arguments {
     pub robot: VirtualRobotArguments,
 }
 
-/// Runs the campaign.
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let bar = Progress::of("recording");
     let progress = |done: usize, total: usize| bar.show(done, total);

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use reachtube::finding::Table;
 use reachtube::number::four_decimals;
 use reachtube::recordings::LogSettings;
 use reachtube_logs::{
@@ -17,7 +18,6 @@ use crate::log_files::{TIMES, log_time, read_log};
 use crate::option_values::{explained, seconds, speed};
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::table;
 
 const HELP: &str = "\
 Examples:
@@ -175,7 +175,7 @@ fn summary(written: &[RecordedRun], found: Option<&[Repeats]>) -> String {
         ]
     };
     let header = ["suite", "runs", "samples", "shortest [s]", "longest [s]"];
-    let mut text = table(&header, &suites.iter().map(row).collect::<Vec<_>>());
+    let mut text = Table::new(header, suites.iter().map(row).collect()).to_string();
     if let Some(found) = found.filter(|found| !found.is_empty()) {
         text += &format!("\n{}{LEGEND}", repeats_table(found));
     }
@@ -198,6 +198,6 @@ fn repeats_table(found: &[Repeats]) -> String {
             format!("{:.4}", repeats.lag),
         ]
     };
-    let rows: Vec<Vec<String>> = found.iter().map(row).collect();
-    table(&["repeated motion", "runs", "correlation", "start", "lag [s]"], &rows)
+    let header = ["repeated motion", "runs", "correlation", "start", "lag [s]"];
+    Table::new(header, found.iter().map(row).collect()).to_string()
 }

@@ -17,9 +17,8 @@ use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
-use crate::table::table;
 use crate::understood::understood;
-use reachtube::finding::Units;
+use reachtube::finding::{Table, Units};
 use reachtube::number::{four_decimals, plural};
 use reachtube_robot::JointKind;
 
@@ -204,7 +203,7 @@ fn joint_table(group: &RunGroup, kinds: &[JointKind]) -> String {
         row
     };
     let rows = group.joints.iter().enumerate().map(row);
-    table(&header, &rows.collect::<Vec<_>>())
+    Table::new(header, rows.collect()).to_string()
 }
 
 fn temperature(joint: &JointSummary) -> String {

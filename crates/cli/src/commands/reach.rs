@@ -6,7 +6,7 @@ use clap::Args;
 use reachtube::conform::model::Provenance;
 use reachtube::conform::tube::Lost;
 use reachtube::conform::{Keep, Model, Stiction, SuiteReach, stiction};
-use reachtube::finding::{Finding, FrontEnd};
+use reachtube::finding::{Finding, FrontEnd, Table};
 use reachtube::page::{Sources, page};
 use reachtube::write;
 use schemars::JsonSchema;
@@ -19,7 +19,6 @@ use crate::opened::OpenedCheck;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::report_files;
-use crate::table::table;
 use reachtube::number::{at_least, four_decimals};
 
 const HELP: &str = "\
@@ -142,10 +141,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let [q, qd] = [0, 1].map(|at| model.signals.units_of_state(at).any());
         let [q, qd] = [format!("widest q [{q}]"), format!("widest qd [{qd}]")];
         let header = ["suite", "run", "samples", &q, &qd, "file"];
-        let rows: Vec<_> = written.iter().map(Written::row).collect();
+        let rows = written.iter().map(Written::row).collect();
         output::print(&format!(
             "reachable sets, with their widest interval at the last sample\n{}{}",
-            table(&header, &rows),
+            Table::new(header, rows),
             rests_text(model, &rests)
         ))?;
     }
@@ -155,7 +154,6 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::of(reach.iter().all(|reach| reach.lost.is_none())))
 }
 
-/// Returns the name of a joint that may come to rest.
 fn joint_of<'a>(model: &'a Model, rest: &Stiction) -> &'a str {
     &model.signals.parts[rest.part - 1].name
 }
@@ -188,12 +186,12 @@ fn rests_text(model: &Model, rests: &[Stiction]) -> String {
             if rest.is_covered() { "yes" } else { "no" }.to_owned(),
         ]
     };
-    let rows: Vec<_> = rests.iter().map(row).collect();
+    let rows = rests.iter().map(row).collect();
     let finding = model.finding_of_stiction(rests).map(|found| format!("{found}\n"));
     let header = ["joint", "steps", "friction differs by", "U allows", "covered"];
     format!(
         "dry friction where a velocity may be zero [N m]\n{}{}",
-        table(&header, &rows),
+        Table::new(header, rows),
         finding.unwrap_or_default()
     )
 }

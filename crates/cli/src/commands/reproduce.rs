@@ -7,7 +7,6 @@ use clap::Args;
 use reachtube::conform::settings::InitialLimit;
 use reachtube::conform::{Notion, Progress as ConformProgress};
 use reachtube::finding::Table;
-use reachtube::reach::Disturbance;
 use reachtube::reproduce::{
     Claim, CoverageRow, Item, PaperFigure, ReproduceOptions, Reproduced, reproduce,
 };
@@ -16,8 +15,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::Result;
-use crate::lock_arguments::LockArguments;
-use crate::option_values::{Choices, DISTURBANCES, INITIAL_LIMITS, choice, trimmed};
+use crate::option_values::{Choices, INITIAL_LIMITS, choice, trimmed};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
@@ -92,11 +90,6 @@ pub(crate) struct Arguments {
 // What Table I is made of.
 #[derive(Debug, Args)]
 pub(crate) struct Table1Arguments {
-    /// Robot of Table I: the embedded lwa4p, or a TOML or URDF file
-    #[arg(long, default_value = "lwa4p")]
-    pub robot: String,
-    #[command(flatten)]
-    pub lock: LockArguments,
     /// Number of random motions of Table I, each slow and fast [default: 50]
     #[arg(long, value_name = "COUNT")]
     pub motions: Option<usize>,
@@ -131,10 +124,6 @@ pub(crate) struct Table2Arguments {
         value_parser = choice::<Notion>(Notion::NAMES)
     )]
     pub notions: Vec<Notion>,
-    /// How the disturbance may change in time [default: constant for the hull, as in the paper;
-    /// otherwise sample]
-    #[arg(long, hide_short_help = true, value_parser = choice::<Disturbance>(DISTURBANCES))]
-    pub disturbance: Option<Disturbance>,
     /// How far X0 may reach in Table II
     #[arg(
         long,
@@ -175,7 +164,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     output::claim_all(&paths)?;
     let data = args.data.clone().unwrap_or_else(|| args.out.join("campaign"));
     let stage = |doing| Box::new(Progress::of(doing)) as Box<dyn ConformProgress>;
-    let computed = reproduce(items, &options(args)?, &data, &stage)?;
+    let computed = reproduce(items, &options(args), &data, &stage)?;
     for PaperFigure { number, svg, .. } in &computed.figures {
         let path = figure_path(&format!("fig{number}"));
         write::atomically(&path, |out| out.write_all(svg.as_bytes()))?;
@@ -203,14 +192,12 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     Ok(Outcome::of(are_proved && hold))
 }
 
-fn options(args: &Arguments) -> Result<ReproduceOptions> {
+fn options(args: &Arguments) -> ReproduceOptions {
     let Arguments { table1, table2, .. } = args;
     let mut options = ReproduceOptions::new(args.seed, args.small);
     if args.data.is_some() {
         options.campaign = None;
     }
-    options.robot = table1.lock.load(&table1.robot)?;
-    options.robot.check_physical()?;
     options.table1.motions = table1.motions.unwrap_or(options.table1.motions);
     options.table1.orders.clone_from(&table1.orders);
     options.table1.model3_up_to = table1.model3_up_to;
@@ -219,12 +206,11 @@ fn options(args: &Arguments) -> Result<ReproduceOptions> {
     if !table2.notions.is_empty() {
         options.table2.notions.clone_from(&table2.notions);
     }
-    options.table2.disturbance = table2.disturbance;
     options.table2.initial_limit = table2.initial_limit;
     options.suite.clone_from(&args.suite);
     options.coverage.campaigns = args.campaigns.unwrap_or(options.coverage.campaigns);
     options.coverage.next = args.next.unwrap_or(options.coverage.next);
-    Ok(options)
+    options
 }
 
 /// Returns the tables, each after its words.

@@ -13,8 +13,7 @@ use crate::expansion::expansion_point;
 use crate::lock_arguments::LockArguments;
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::table;
-use reachtube::finding::Units;
+use reachtube::finding::{Table, Units};
 use reachtube::number::{fixed, plural, six_digits};
 
 const HELP: &str = "\
@@ -136,12 +135,11 @@ fn description(robot: &Robot) -> String {
         robot.name(),
         joint_counts(robot),
         locked(robot),
-        table(&joint_header, &joints),
-        table(&link_header, &links)
+        Table::new(joint_header, joints),
+        Table::new(link_header, links)
     )
 }
 
-/// Counts the joints of each kind.
 fn joint_counts(robot: &Robot) -> String {
     let kinds = robot.kinds();
     let count = |kind: JointKind| {
@@ -152,7 +150,6 @@ fn joint_counts(robot: &Robot) -> String {
     counts.collect::<Vec<_>>().join(" and ")
 }
 
-/// Names the joints that are held at a position.
 fn locked(robot: &Robot) -> String {
     let held = |joint: &LockedJoint| {
         format!("{} = {} {}", joint.name, six_digits(joint.position), joint.kind.position_unit())

@@ -46,7 +46,6 @@ fn every_command_refuses_the_branch_and_takes_the_lock() {
         "conform --robot arm.urdf --data runs --torque motor --out model.json",
         "inspect --robot arm.urdf --data runs",
         "identify --robot arm.urdf --excitation a.csv --cut-off 15 --urdf new.urdf",
-        "reproduce table1 --robot arm.urdf --motions 1 --orders 1",
     ];
     for command in commands {
         if command.starts_with("robot") || command.starts_with("abstract") {

@@ -97,10 +97,8 @@ fn results_fit_the_schema() {
     run("excite", "excite --robot arm.toml --harmonics 2 --period 5 --out e.csv");
     run("robot_show", "robot show arm.toml");
     run("abstract", "abstract --robot arm.toml");
-    run(
-        "reproduce",
-        "reproduce table1 coverage --robot arm.toml --motions 1 --orders 1 --campaigns 1 --next 20",
-    );
+    let small = "--motions 1 --orders 1 --campaigns 1 --next 20";
+    run("reproduce", &format!("reproduce table1 coverage {small}"));
 }
 
 #[test]

@@ -18,19 +18,6 @@ fn table_1_is_printed_beside_the_papers() {
     let table = &lab.run(&format!("{command} --json")).exits(0).json()["table1"];
     assert_eq!(table["cells"].as_array().unwrap().len(), (3 + 2) * 2);
     assert_eq!(table["cells"][0]["paper"]["error"], 0.004);
-}
-
-/// The paper has no numbers for another robot.
-#[test]
-fn table_1_of_another_robot() {
-    let lab = Lab::new();
-    let table = lab
-        .run("reproduce table1 --robot arm.toml --motions 1 --orders 1,3 --json")
-        .exits(0)
-        .json();
-    let cells = table["table1"]["cells"].as_array().unwrap();
-    assert_eq!(cells.len(), (3 + 3) * 2);
-    assert!(cells.iter().all(|cell| cell.get("paper") == Some(&serde_json::Value::Null)));
     lab.run("reproduce table1 --motions 0").fails_with(&["no motions", "give at least 1"]);
     lab.run("reproduce table1 --range -1").fails_with(&["joint1", "choose a wider range"]);
     lab.run("reproduce table1 --orders 0").fails_with(&["order 1 at least"]);

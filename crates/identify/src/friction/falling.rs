@@ -1,7 +1,7 @@
 //! Viscous friction that falls with speed where it was not shown, and the nearest that rises.
 
 use crate::bodies::{BodyProgram, RisingFriction};
-use crate::regression::singular::Singular;
+use crate::regression::singular::UnitSingular;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
 use reachtube_robot::friction::Viscous;
@@ -11,9 +11,6 @@ use serde::Serialize;
 
 /// Weight of the prior of friction that must rise, in squared standard deviations: rounding only.
 const STRENGTH: f64 = 1e-6;
-
-/// Singular values below this part of the largest count as zero.
-const RANK_TOLERANCE: f64 = 1e-7;
 
 /// Viscous friction by least squares that falls with speed below a speed that the joint may reach.
 /// Friction that rises up to there was used in its place.
@@ -214,21 +211,12 @@ pub(crate) fn nearest(
 
 /// Returns the directions of the parameters `columns` that rows with the factor `r` determine.
 fn determined(r: &DMatrix<f64>, columns: &[usize]) -> DMatrix<f64> {
-    let own = r.select_columns(columns);
-    let largest = own.column_iter().map(|column| column.norm()).fold(0.0, f64::max);
-    let inverse = |norm: f64| if norm > 1e-12 * largest { 1.0 / norm } else { 0.0 };
-    let unit = DVector::from_iterator(
-        columns.len(),
-        own.column_iter().map(|column| inverse(column.norm())),
-    );
-    let unit = DMatrix::from_diagonal(&unit);
     if columns.is_empty() {
         return DMatrix::zeros(0, 0);
     }
-    let Singular { values, v, .. } = Singular::of(&(own * &unit));
-    let cut = RANK_TOLERANCE * values.max();
-    let kept: Vec<usize> = (0..values.len()).filter(|k| values[*k] > cut).collect();
-    unit * v.select_columns(&kept)
+    let UnitSingular { unit, singular, cut } = UnitSingular::of(&r.select_columns(columns));
+    let kept: Vec<usize> = (0..columns.len()).filter(|k| singular.values[*k] > cut).collect();
+    DMatrix::from_diagonal(&unit) * singular.v.select_columns(&kept)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! How well the recordings determine the inertia that each joint feels.
 
 use crate::prepare::log::PreparedLog;
-use crate::regression::singular::Singular;
+use crate::regression::singular::UnitSingular;
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
 use reachtube_robot::{Parameter, Regressor, Robot};
@@ -10,9 +10,6 @@ use serde::Serialize;
 
 /// Positions at which the mass matrix is looked at, at most.
 const POSITIONS: usize = 40;
-
-/// Singular values below this part of the largest count as zero.
-const RANK_TOLERANCE: f64 = 1e-7;
 
 /// Part of a combination in directions that are not determined which is rounding.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -104,14 +101,9 @@ struct Directions {
 
 impl Directions {
     fn new(fit: &TriangularFactor) -> Self {
-        let norms: Vec<f64> = fit.r.column_iter().map(|column| column.norm()).collect();
-        let largest = norms.iter().copied().fold(0.0, f64::max);
-        let inverse = |norm: &f64| if *norm > 1e-12 * largest { 1.0 / norm } else { 0.0 };
-        let unit = DVector::from_iterator(norms.len(), norms.iter().map(inverse));
-        let Singular { values, v, .. } = Singular::of(&(&fit.r * DMatrix::from_diagonal(&unit)));
-        let cut = RANK_TOLERANCE * values.max();
-        let errors = values.iter().map(|value| (*value > cut).then(|| 1.0 / value)).collect();
-        Self { unit, v, errors }
+        let UnitSingular { unit, singular, cut } = UnitSingular::of(&fit.r);
+        let error = |value: &f64| (*value > cut).then(|| 1.0 / value);
+        Self { unit, errors: singular.values.iter().map(error).collect(), v: singular.v }
     }
 
     /// Returns the standard error of the combination `row` of the parameters.

@@ -59,7 +59,6 @@ impl LinkPrior {
         self.described.iter().map(|described| described.unwrap_or(ball)).collect()
     }
 
-    /// Returns the names of the links that have a ball.
     pub(super) fn balls(&self, robot: &Robot) -> Vec<String> {
         let links = robot.joints().iter().zip(&self.described);
         links.filter(|(_, p)| p.is_none()).map(|(joint, _)| joint.name.clone()).collect()

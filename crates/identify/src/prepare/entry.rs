@@ -36,7 +36,6 @@ pub enum LogEntry {
 }
 
 impl LogEntry {
-    /// Returns the path, the first time and the last time \[s\].
     pub(super) fn parts(&self) -> (&Path, f64, Option<f64>) {
         match self {
             Self::Path(path) => (path, 0.0, None),

@@ -31,7 +31,6 @@ impl Past {
         Self { weights: inverse.expect("both factors were computed"), has_velocities, step }
     }
 
-    /// Returns the number of samples of an estimate.
     pub(super) fn samples(&self) -> usize {
         self.weights.ncols()
     }

@@ -1,14 +1,14 @@
 use crate::error::{Error, Result};
 use crate::prepare::changes::{LogChange, described};
-use crate::prepare::derivative::derivative;
 use crate::prepare::log::PreparedLog;
 use crate::prepare::low_pass::{LowPass, TRANSIENT_PERIODS};
 use crate::prepare::raw_log::RawLog;
-use crate::prepare::resample::{median_step, resampled};
+use crate::prepare::resample::median_step;
 use crate::prepare::settings::{PrepareSettings, VelocitySource, gain_of_each_joint};
-use crate::prepare::signals::{Signals, set_column, without_motion};
+use crate::prepare::signals::Signals;
 use rayon::prelude::*;
-use reachtube_recordings::{Run, Torque};
+use reachtube_diagnose::median;
+use reachtube_recordings::Torque;
 use reachtube_robot::friction::Coulomb;
 use reachtube_robot::{Joint, Robot};
 
@@ -51,7 +51,8 @@ pub fn prepare(
     cut_off: f64,
     compensated: Option<&Robot>,
 ) -> Result<Prepared> {
-    let common = common_step(raw.iter().filter_map(|log| median_step(&log.run.times)).collect());
+    let steps = raw.iter().filter_map(|log| median_step(&log.run.times));
+    let common = median(steps).unwrap_or(0.0);
     let done: Vec<(PreparedLog, LogChange)> = raw
         .par_iter()
         .map(|log| prepare_one(log, settings, cut_off, common, compensated))
@@ -87,21 +88,8 @@ pub fn unfiltered(raw: &RawLog, gains: &[f64]) -> Result<PreparedLog> {
         duration: raw.run.duration(),
         cut_off: f64::INFINITY,
     })?;
-    let n = raw.run.joints;
-    let gains = gain_of_each_joint(gains, n)?;
-    let even = |which, joint| resampled(&raw.run.times, raw.column(which, joint), step);
-    let mut log = without_motion(raw, step);
-    for (joint, gain) in gains.iter().enumerate() {
-        let qd = even(Run::qd, joint);
-        let columns = [
-            (&mut log.q, even(Run::q, joint)),
-            (&mut log.qdd, derivative(&qd, step)),
-            (&mut log.qd, qd),
-            (&mut log.tau, even(Run::torque, joint).into_iter().map(|tau| gain * tau).collect()),
-        ];
-        columns.into_iter().for_each(|(rows, column)| set_column(rows, joint, n, &column));
-    }
-    Ok(log)
+    let gains = gain_of_each_joint(gains, raw.run.joints)?;
+    Ok(Signals { raw, filter: None, step }.log(&gains, false))
 }
 
 /// Describes what was subtracted from the torques.
@@ -130,12 +118,6 @@ pub fn shortest(cut_off: f64, step: f64) -> [f64; 2] {
     [ends + 2.0 * MIN_SAMPLES as f64 * step, ends]
 }
 
-/// Returns the median of the median times between the samples of recordings \[s\].
-pub(crate) fn common_step(mut steps: Vec<f64>) -> f64 {
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
-}
-
 /// Prepares one recording.
 ///
 /// Recordings sampled at nearly the same rate get the same sample time, `common` \[s\], so that
@@ -154,15 +136,15 @@ pub(crate) fn prepare_one(
         cut_off,
     };
     // One even sample time.
-    let median = median_step(&raw.run.times).ok_or_else(too_short)?;
-    let step = if (median / common - 1.0).abs() < SAME_STEP { common } else { median };
+    let usual = median_step(&raw.run.times).ok_or_else(too_short)?;
+    let step = if (usual / common - 1.0).abs() < SAME_STEP { common } else { usual };
     // Filtered signals of all joints.
     let filter = LowPass::new(cut_off, step.recip()).ok_or_else(|| Error::SampledTooSlowly {
         log: raw.name.clone(),
         rate: step.recip(),
         cut_off,
     })?;
-    let signals = Signals { raw, filter, step };
+    let signals = Signals { raw, filter: Some(filter), step };
     let differentiated = match settings.velocity {
         VelocitySource::Recorded => false,
         VelocitySource::Differentiated => true,
@@ -180,9 +162,9 @@ pub(crate) fn prepare_one(
     if samples < 2 * end + MIN_SAMPLES {
         return Err(too_short());
     }
-    let deviation = |pair: &[f64]| (pair[1] - pair[0] - median).abs();
+    let deviation = |pair: &[f64]| (pair[1] - pair[0] - usual).abs();
     let jitter = raw.run.times.windows(2).map(deviation).fold(0.0, f64::max);
-    let change = LogChange { median_step: median, jitter, differentiated };
+    let change = LogChange { median_step: usual, jitter, differentiated };
     Ok((log.interval(end..samples - end), change))
 }
 
@@ -190,6 +172,7 @@ pub(crate) fn prepare_one(
 mod tests {
     use super::*;
     use crate::prepare::cut_off::cut_off;
+    use reachtube_recordings::Run;
     use std::f64::consts::PI;
 
     fn wave() -> RawLog {

@@ -97,13 +97,5 @@ mod tests {
         };
         assert_eq!(check(&[]), Ok(vec![1.0; 2]));
         assert_eq!(check(&[-1.0, 2.5]), Ok(vec![-1.0, 2.5]));
-        for (gains, words) in [
-            (&[1.0][..], "1 given; give one for each of the 2 joints"),
-            (&[1.0, 0.0], "gain 2 is 0"),
-            (&[f64::NAN, 1.0], "gain 1 is NaN"),
-        ] {
-            let error = check(gains).unwrap_err();
-            assert!(error.contains(words), "{error}");
-        }
     }
 }

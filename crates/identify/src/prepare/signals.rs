@@ -11,10 +11,10 @@ use crate::prepare::past::Past;
 use crate::prepare::raw_log::RawLog;
 use crate::prepare::resample::resampled;
 
-/// The signals of a recording at an even sample time, and their low-pass.
+/// The signals of a recording at an even sample time, and their low-pass, if they have one.
 pub(super) struct Signals<'a> {
     pub raw: &'a RawLog,
-    pub filter: LowPass,
+    pub filter: Option<LowPass>,
     pub step: f64,
 }
 
@@ -24,7 +24,7 @@ impl<'a> Signals<'a> {
     }
 
     fn filtered(&self, mut values: Vec<f64>) -> Vec<f64> {
-        self.filter.zero_phase(&mut values);
+        self.filter.iter().for_each(|filter| filter.zero_phase(&mut values));
         values
     }
 
@@ -123,7 +123,7 @@ fn warm_robot<'a>(robot: &'a Robot, log: &PreparedLog, k: usize) -> Cow<'a, Robo
 
 /// Returns the log of a recording with its order and its temperatures, which change too slowly to
 /// need the low-pass. All else is zero.
-pub(super) fn without_motion(raw: &RawLog, step: f64) -> PreparedLog {
+fn without_motion(raw: &RawLog, step: f64) -> PreparedLog {
     let (n, run) = (raw.run.joints, &raw.run);
     let samples = resampled(&run.times, raw.column(Run::q, 0), step).len();
     let mut log = PreparedLog::zeros(&raw.name, n, samples, step);
@@ -139,7 +139,7 @@ pub(super) fn without_motion(raw: &RawLog, step: f64) -> PreparedLog {
 }
 
 /// Replaces a column of rows of `n` values.
-pub(super) fn set_column(rows: &mut [f64], joint: usize, n: usize, column: &[f64]) {
+fn set_column(rows: &mut [f64], joint: usize, n: usize, column: &[f64]) {
     rows.iter_mut().skip(joint).step_by(n).zip(column).for_each(|(cell, value)| *cell = *value);
 }
 

@@ -163,7 +163,6 @@ impl Windows {
     }
 }
 
-/// Returns a name as a cell of a CSV file.
 fn cell(name: &str) -> Cow<'_, str> {
     match name.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", name.replace('"', "\"\"")).into(),

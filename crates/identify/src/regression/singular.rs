@@ -5,6 +5,10 @@ use nalgebra::{DMatrix, DVector, Dyn, SVD};
 /// Thresholds of the iteration that are tried, in units of the machine epsilon.
 const THRESHOLDS: [f64; 3] = [5.0, 50.0, 5e3];
 
+/// Singular values below this part of the largest count as zero: the rows do not determine their
+/// directions.
+const RANK_TOLERANCE: f64 = 1e-7;
+
 /// The singular value decomposition A = U diag(σ) Vᵀ of a square or tall matrix A with k columns.
 pub(crate) struct Singular {
     /// U, one column per singular value.
@@ -36,6 +40,27 @@ impl Singular {
 
     fn from_svd(svd: SVD<f64, Dyn, Dyn>) -> Option<Self> {
         Some(Self { u: svd.u?, values: svd.singular_values, v: svd.v_t?.transpose() })
+    }
+}
+
+/// The decomposition of a matrix whose columns are scaled to unit length.
+pub(crate) struct UnitSingular {
+    /// Factor of each column; 0 for a column of zeros.
+    pub unit: DVector<f64>,
+    pub singular: Singular,
+    /// Singular values up to this one count as zero.
+    pub cut: f64,
+}
+
+impl UnitSingular {
+    pub(crate) fn of(matrix: &DMatrix<f64>) -> Self {
+        let norms: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
+        let largest = norms.iter().copied().fold(0.0, f64::max);
+        let inverse = |norm: &f64| if *norm > 1e-12 * largest { 1.0 / norm } else { 0.0 };
+        let unit = DVector::from_iterator(norms.len(), norms.iter().map(inverse));
+        let singular = Singular::of(&(matrix * DMatrix::from_diagonal(&unit)));
+        let cut = RANK_TOLERANCE * singular.values.max();
+        Self { unit, singular, cut }
     }
 }
 

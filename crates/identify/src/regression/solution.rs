@@ -1,10 +1,6 @@
-use crate::regression::singular::Singular;
+use crate::regression::singular::{Singular, UnitSingular};
 use crate::regression::triangular_factor::TriangularFactor;
 use nalgebra::{DMatrix, DVector};
-
-/// Singular values below this part of the largest count as zero: the rows do not determine their
-/// directions.
-const RANK_TOLERANCE: f64 = 1e-7;
 
 /// A parameter is undetermined if its entry in an undetermined unit direction exceeds this value.
 const MIN_ENTRY: f64 = 0.05;
@@ -36,25 +32,9 @@ impl TriangularFactor {
     /// Directions that only rounding determines count as undetermined.
     #[must_use]
     pub(crate) fn solve(&self) -> Solution {
-        self.solve_within(RANK_TOLERANCE)
-    }
-
-    /// Solves the least-squares problem as [`TriangularFactor::solve`] does, with a tolerance of
-    /// its own.
-    ///
-    /// Directions whose singular value is at most `tolerance` times the largest are undetermined.
-    #[must_use]
-    pub(crate) fn solve_within(&self, tolerance: f64) -> Solution {
         let p = self.r.ncols();
-        let scale: Vec<f64> = self.r.column_iter().map(|column| column.norm()).collect();
-        let largest_scale = scale.iter().copied().fold(0.0, f64::max);
-        // A column of zeros is not scaled: its parameter is undetermined.
-        let inverse = |s: &f64| if *s > 1e-12 * largest_scale { 1.0 / s } else { 0.0 };
-        let unit = DVector::from_iterator(p, scale.iter().map(inverse));
-        // Singular values of the scaled factor.
-        let Singular { u, values: sigma, v } =
-            Singular::of(&(&self.r * DMatrix::from_diagonal(&unit)));
-        let cut = tolerance * sigma.max();
+        let UnitSingular { unit, singular, cut } = UnitSingular::of(&self.r);
+        let Singular { u, values: sigma, v } = singular;
         // Solution and covariance from the determined directions.
         let mut scaled = DVector::zeros(p);
         let mut covariance = DMatrix::zeros(p, p);

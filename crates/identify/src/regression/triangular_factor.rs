@@ -50,7 +50,6 @@ impl TriangularFactor {
         Self::from_parts(parts, width)
     }
 
-    /// Joins the rows of several factors into one factor.
     pub(crate) fn joined<'a>(factors: impl IntoIterator<Item = &'a Self>) -> Self {
         let parts: Vec<_> = factors.into_iter().map(Self::augmented).collect();
         let width = parts.first().map_or(1, DMatrix::ncols);

@@ -32,8 +32,6 @@ pub(super) enum Work {
 pub(super) struct SuiteOf {
     /// Name of its motion.
     pub motion: String,
-    /// Whether it calibrates the sets.
-    pub calibrates: bool,
     /// Whether it is held out for a check of the model.
     pub is_held_out: bool,
 }
@@ -47,7 +45,6 @@ impl Job {
         Self { kind: "test_suite", files, first: 1, work: Work::Suite(of, motion, runs) }
     }
 
-    /// Returns the job of recording `index` (from 0) of a kind that identifies the robot.
     pub(super) fn identification(kind: &'static str, index: usize, work: Work) -> Self {
         let files = vec![format!("{kind}/{kind}_{:03}.csv", index + 1)];
         Self { kind, files, first: index + 1, work }

@@ -8,8 +8,8 @@
 //! - Static poses show gravity, slow motions of single joints show friction, and exciting motions
 //!   show the inertial parameters.
 //!
-//! [`CampaignOptions::small`] has test suites only, some of them to calibrate the sets and to try
-//! them on, and [`CampaignOptions::demo`] exciting motions only; they take a second or two to make.
+//! [`CampaignOptions::small`] has test suites only, some of them to try the sets on, and
+//! [`CampaignOptions::demo`] exciting motions only; they take a second or two to make.
 //!
 //! The files are independent of each other, so that all cores are used, and each is written whole.
 //! A campaign that was stopped continues where it ended, with the same bytes.

@@ -23,8 +23,6 @@ pub struct CampaignOptions {
     pub seed: u64,
     /// Number of random point-to-point motions, those held out included.
     pub motions: usize,
-    /// Number of motions, taken before those held out, that calibrate the sets.
-    pub calibration_motions: usize,
     /// Number of motions, taken from the last ones, that are held out for a check of the model.
     pub held_out_motions: usize,
     /// Number of points of each motion from which the open loop starts; each gives a suite.
@@ -57,7 +55,6 @@ impl Default for CampaignOptions {
         Self {
             seed: 1,
             motions: 38,
-            calibration_motions: 0,
             held_out_motions: 0,
             start_points: 4,
             runs: 15,
@@ -82,16 +79,14 @@ impl CampaignOptions {
         Self { excitation: 8, validation: 4, stride: 2, ..logs }
     }
 
-    /// Returns the sizes of a small experiment: 14 motions of 3 s, of which 7 calibrate the sets
-    /// and 2 are held out, with 2 suites of 5 runs per motion, and no other recordings.
+    /// Returns the sizes of a small experiment: 14 motions of 3 s, of which 2 are held out, with 2
+    /// suites of 5 runs per motion, and no other recordings.
     #[must_use]
     pub fn small() -> Self {
         let few = Self { motions: 14, start_points: 2, runs: 5, ..Self::default() };
-        let split = Self { calibration_motions: 7, held_out_motions: 2, ..few };
-        Self { duration: Some(3.0), ..split.suites_only() }
+        Self { held_out_motions: 2, duration: Some(3.0), ..few.suites_only() }
     }
 
-    /// Returns these sizes without recordings to identify with.
     pub(crate) fn suites_only(self) -> Self {
         Self { rest: 0, one_joint: 0, excitation: 0, validation: 0, ..self }
     }
@@ -118,8 +113,7 @@ impl CampaignOptions {
                 return Err(Error::Range { name, given, least, most });
             }
         }
-        let (motions, held_out) =
-            (self.motions, self.held_out_motions.saturating_add(self.calibration_motions));
+        let (motions, held_out) = (self.motions, self.held_out_motions);
         if motions <= held_out && held_out > 0 {
             return Err(Error::NoTrainingMotion { motions, held_out });
         }

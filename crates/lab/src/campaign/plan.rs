@@ -72,8 +72,7 @@ fn suites(
     };
     let name = format!("M{}", index + 1);
     let held_out = options.motions - options.held_out_motions;
-    let calibrates = (held_out - options.calibration_motions..held_out).contains(&index);
-    let of = SuiteOf { motion: name.clone(), calibrates, is_held_out: index >= held_out };
+    let of = SuiteOf { motion: name.clone(), is_held_out: index >= held_out };
     let folder = if options.has_suites_only() { "" } else { "suites/" };
     let longest = (options.longest / SAMPLE_TIME).round() as usize;
     (0..options.start_points)

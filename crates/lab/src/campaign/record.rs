@@ -28,9 +28,6 @@ pub struct RecordedCampaign {
     pub kept: usize,
     /// Size of all recordings \[bytes\].
     pub bytes: u64,
-    /// Names of the motions that calibrate the sets.
-    #[serde(skip)]
-    pub calibration: Vec<String>,
     /// Names of the suites to find the sets with.
     #[serde(skip)]
     pub training: Vec<String>,
@@ -63,7 +60,7 @@ pub struct RecordedCampaign {
 ///
 /// let folder = tempfile::tempdir().unwrap();
 /// let few = CampaignOptions { motions: 2, held_out_motions: 1, ..CampaignOptions::small() };
-/// let few = CampaignOptions { calibration_motions: 0, runs: 2, longest: 0.5, ..few };
+/// let few = CampaignOptions { runs: 2, longest: 0.5, ..few };
 /// let options = CampaignOptions { duration: Some(1.0), ..few };
 /// let recorded = record(&Robot::lwa4p(), &options, folder.path(), &|_done, _total| ())?;
 /// assert_eq!(recorded.training, ["M1a", "M1b"]);
@@ -96,16 +93,12 @@ pub fn record(
     let (check, training): (Vec<_>, Vec<_>) = suites.iter().partition(|(_, of)| of.is_held_out);
     let names =
         |suites: Vec<(&SuiteRuns, _)>| suites.iter().map(|(runs, _)| runs.name.clone()).collect();
-    let mut calibration: Vec<String> =
-        suites.iter().filter(|(_, of)| of.calibrates).map(|(_, of)| of.motion.clone()).collect();
-    calibration.dedup();
     Ok(RecordedCampaign {
         suites: suites.len(),
         runs: suites.iter().map(|(runs, _)| runs.scatter.len()).sum(),
         recordings: lines.len(),
         kept: recorded.iter().map(|job| job.kept).sum(),
         bytes: recorded.iter().map(|job| job.bytes).sum(),
-        calibration,
         training: names(training),
         check: names(check),
     })

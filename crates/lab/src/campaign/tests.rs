@@ -29,8 +29,7 @@ fn small(seed: u64) -> CampaignOptions {
 }
 
 fn suites(seed: u64) -> CampaignOptions {
-    let few =
-        CampaignOptions { motions: 2, calibration_motions: 0, held_out_motions: 1, ..small(1) };
+    let few = CampaignOptions { motions: 2, held_out_motions: 1, ..small(1) };
     CampaignOptions { seed, duration: Some(2.0), longest: 5.0, runs: 5, ..few.suites_only() }
 }
 

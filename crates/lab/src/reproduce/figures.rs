@@ -104,7 +104,6 @@ fn line(times: &[f64], values: &[f64], colour: [u8; 3]) -> Series {
     Series::line(times.iter().copied().zip(values.iter().copied()).collect(), colour)
 }
 
-/// Returns a state of all runs over time in its reachable set.
 fn in_set(suite: &Exemplary, state: usize, title: &str, y: &str) -> Chart {
     let SuiteFigure { times, band, runs, .. } = &suite.figure;
     let [lower, upper] = [&band.lower, &band.upper]

@@ -66,8 +66,6 @@ impl Item {
 pub struct ReproduceOptions {
     /// The campaign that is recorded where it is missing; if `None`, the recordings are given.
     pub campaign: Option<CampaignOptions>,
-    /// The robot of Table I.
-    pub robot: Robot,
     /// Table I.
     pub table1: Table1Options,
     /// Table II, whose sets Figs. 1, 2 and 4 show.
@@ -97,8 +95,7 @@ impl ReproduceOptions {
             let notions = vec![Notion::Hull, Notion::Exact];
             (campaign, table1, Table2Options { notions, ..table2 }, coverage)
         };
-        let (campaign, robot) = (Some(campaign), Robot::lwa4p());
-        Self { campaign, robot, table1, table2, suite: None, coverage }
+        Self { campaign: Some(campaign), table1, table2, suite: None, coverage }
     }
 }
 
@@ -155,7 +152,7 @@ pub fn reproduce(
     if has(Item::Table1) {
         let bar = stage("Table I");
         let progress = |done, total| bar.recordings_read(done, total);
-        computed.table1 = Some(table1(&options.robot, &options.table1, &progress)?);
+        computed.table1 = Some(table1(&options.table1, &progress)?);
     }
     computed.sets(items, options, data, stage)?;
     if has(Item::Table3) || has(Item::Fig5) {

@@ -61,7 +61,7 @@ pub struct Cell {
     pub spread: Option<f64>,
     /// Number of motions in which the model diverged.
     pub diverged: usize,
-    /// The paper's entry, if there is one and the robot is the paper's.
+    /// The paper's entry, if there is one.
     pub paper: Option<Paper>,
 }
 
@@ -79,7 +79,7 @@ pub struct Table1 {
     pub cells: Vec<Cell>,
 }
 
-/// Simulates `robot` and its models about q = 0 under the same inputs, and compares velocities.
+/// Simulates the LWA 4P and its models about q = 0 under the same inputs, and compares velocities.
 ///
 /// The robot is simulated by Featherstone's articulated bodies. The motions are point to point
 /// along quintics, with a random direction of each joint from a random position; slow and fast
@@ -94,18 +94,14 @@ pub struct Table1 {
 ///
 /// ```
 /// use reachtube_lab::reproduce::{Table1Options, table1};
-/// use reachtube_robot::Robot;
 ///
 /// let options = Table1Options { motions: 2, orders: vec![1], ..Default::default() };
-/// let table = table1(&Robot::lwa4p(), &options, &|_done, _total| ())?;
+/// let table = table1(&options, &|_done, _total| ())?;
 /// assert!(table.cells.iter().all(|cell| cell.diverged == 0 && cell.mean.unwrap() < 0.1));
 /// # Ok::<(), reachtube_lab::Error>(())
 /// ```
-pub fn table1(
-    robot: &Robot,
-    options: &Table1Options,
-    progress: &(dyn Fn(usize, usize) + Sync),
-) -> Result<Table1> {
+pub fn table1(options: &Table1Options, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Table1> {
+    let robot = &Robot::lwa4p();
     if options.motions == 0 || options.orders.is_empty() {
         return Err(Error::NothingToSimulate);
     }
@@ -118,9 +114,8 @@ pub fn table1(
     let models = models(robot, options)?;
     let errors = errors(&models, &speeds, progress);
     // One cell per model and speed.
-    let is_papers = *robot == Robot::lwa4p();
     let cells = errors.chunks(options.motions).enumerate().map(|(cell, errors)| {
-        Cell::new(&models[cell / speeds.len()], Speed::ALL[cell % speeds.len()], errors, is_papers)
+        Cell::new(&models[cell / speeds.len()], Speed::ALL[cell % speeds.len()], errors)
     });
     Ok(Table1 {
         robot: robot.name().into(),
@@ -181,7 +176,7 @@ fn models(robot: &Robot, options: &Table1Options) -> Result<Vec<PolynomialModel>
 }
 
 impl Cell {
-    fn new(model: &PolynomialModel, speed: Speed, errors: &[Option<f64>], is_papers: bool) -> Self {
+    fn new(model: &PolynomialModel, speed: Speed, errors: &[Option<f64>]) -> Self {
         let kept: Vec<f64> = errors.iter().flatten().copied().collect();
         let count = kept.len() as f64;
         let mean = (!kept.is_empty()).then(|| kept.iter().sum::<f64>() / count);
@@ -197,7 +192,7 @@ impl Cell {
             errors: errors.to_vec(),
             mean,
             spread,
-            paper: Paper::entry(model.kind(), model.order(), speed).filter(|_| is_papers),
+            paper: Paper::entry(model.kind(), model.order(), speed),
         }
     }
 }

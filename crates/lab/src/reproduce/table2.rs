@@ -23,10 +23,6 @@ pub struct Table2Options {
     pub suites: Vec<String>,
     /// The notions of enclosure, each for both cases of the table.
     pub notions: Vec<Notion>,
-    /// How the disturbance may change in time. Where it is `None`, it is constant for the hull, as
-    /// the paper's V (Prop. 1), and constant over each sample for the other notions: under constant
-    /// disturbances the set itself is so thin that X0 has to fill it.
-    pub disturbance: Option<Disturbance>,
     /// How far X0 may reach. The paper's X0 has the same positions in both cases, about as far as
     /// its recordings start from their mean.
     pub initial_limit: InitialLimit,
@@ -37,7 +33,6 @@ impl Default for Table2Options {
         Self {
             suites: Vec::new(),
             notions: vec![Notion::Hull],
-            disturbance: None,
             initial_limit: InitialLimit::Positions,
         }
     }
@@ -160,14 +155,16 @@ impl FoundCase {
 
 impl Table2Options {
     fn setup(&self, notion: Notion, states: States) -> Result<Setup> {
-        let default = match notion {
+        // Constant for the hull, as the paper's V (Prop. 1). Under constant disturbances the set
+        // itself is so thin that X0 has to fill it.
+        let disturbance = match notion {
             Notion::Hull => Disturbance::Constant,
             _ => Disturbance::Sample,
         };
         let settings = Settings {
             notion,
             states,
-            disturbance: self.disturbance.unwrap_or(default),
+            disturbance,
             initial_limit: self.initial_limit,
             centre: Centre::Origin,
             ..Settings::default()

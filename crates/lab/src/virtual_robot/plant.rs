@@ -79,7 +79,6 @@ impl<'a> Plant<'a> {
         plant
     }
 
-    /// Moves the arm over `duration` \[s\] under a motor torque \[N m\].
     pub(super) fn advance(&mut self, torque: &[f64], duration: f64) {
         let steps = (duration / STEP - 1e-9).ceil().max(0.0);
         for _ in 0..steps as usize {

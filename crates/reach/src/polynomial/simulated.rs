@@ -1,7 +1,7 @@
 //! Simulated solutions, by which the settings of a flowpipe are chosen. Nothing is proved here.
 
 use reachtube_ode::{Ensemble, InitialValueProblem};
-use reachtube_scalar::{Elementary, Interval, Lanes, PolynomialMap};
+use reachtube_scalar::{Interval, Lanes, PolynomialMap, SineCosine};
 
 use crate::grid::TimeGrid;
 use crate::polynomial::flowpipe::Flowpipe;

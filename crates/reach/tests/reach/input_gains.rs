@@ -109,7 +109,7 @@ fn halving_stops_where_the_response_has_decayed() {
     // Only rounding errors of either sign remain of e^{At} B, so halving would not end.
     let coupled = system(&[&[-60.0, 25.0], &[20.0, -70.0]], &[&[1.0], &[-1.5]], &[0.0, 0.0]);
     let gains = Measurable.input_gains(&uniform(&coupled, 1500));
-    assert!(gains[1499].iter().all(|x| x.width() < 1e-12 * x.hi()), "{}", gains[1499]);
+    assert!(gains[1499].iter().all(|x| x.width() < 1e-12 * x.hi()), "{:?}", gains[1499]);
 }
 
 #[test]

@@ -46,7 +46,6 @@ impl Assignment {
     }
 }
 
-/// Finds the columns by their names.
 pub(super) fn assign(
     files: &[PathBuf],
     dialects: &[Dialect],
@@ -312,7 +311,6 @@ impl Finder<'_> {
         (problem, remedy)
     }
 
-    /// Returns the names of the columns that are not used.
     fn unused(&self, assignment: &Assignment) -> Vec<String> {
         let used = |column: &Column| {
             assignment.lists().iter().any(|(_, list)| list.contains(column))

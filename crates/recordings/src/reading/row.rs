@@ -80,7 +80,6 @@ fn field(text: &[u8], separator: u8) -> &[u8] {
     &text[..end.unwrap_or(text.len())]
 }
 
-/// Returns whether a field ends at byte `at`.
 #[inline]
 fn ends(text: &[u8], at: usize, separator: u8) -> bool {
     text.get(at).is_none_or(|byte| *byte == separator || matches!(byte, b'\n' | b'\r'))

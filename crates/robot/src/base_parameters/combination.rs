@@ -36,12 +36,10 @@ pub(super) fn format_combination(parameters: &[Parameter], leader: usize, row: &
     out
 }
 
-/// Formats a sum of (sign, name) terms.
 fn sum(terms: &[(f64, String)]) -> String {
     terms.iter().enumerate().map(|(i, (sign, name))| term(*sign, name, i == 0)).collect()
 }
 
-/// Formats a term with its sign.
 fn term(sign: f64, what: &str, first: bool) -> String {
     match (first, sign < 0.0) {
         (true, false) => what.into(),
@@ -84,7 +82,6 @@ impl ReadableFactor {
         best.map_or_else(|| Self::Times(rounded(size, 1e6).to_string()), |(_, factor)| factor)
     }
 
-    /// Formats the coefficient times `what`.
     fn times(&self, what: &str) -> String {
         match self {
             Self::One => what.into(),

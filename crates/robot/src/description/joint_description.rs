@@ -224,7 +224,6 @@ pub struct JointDescription {
 }
 
 impl PlacementDescription {
-    /// Returns the placement.
     fn placement(&self) -> Placement {
         let [roll, pitch, yaw] = self.rpy.unwrap_or_default();
         let rotation = match self.rotation {
@@ -282,7 +281,6 @@ impl JointDescription {
         }
     }
 
-    /// Returns the parameters that gravity acts on.
     pub(crate) fn gravity_inertia(&self) -> LinkInertia {
         self.gravity_moments.map_or_else(
             || self.link_inertia(),

@@ -93,7 +93,6 @@ impl RobotDescription {
         toml::to_string(self).expect("numbers, strings and tables are valid TOML")
     }
 
-    /// Makes the robot of a checked description.
     fn build(self) -> Robot {
         let geometry: Vec<_> = self.joints.iter().map(|j| j.geometry(self.convention)).collect();
         let inertias: Vec<_> = self.joints.iter().map(JointDescription::link_inertia).collect();

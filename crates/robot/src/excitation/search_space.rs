@@ -49,7 +49,6 @@ impl SearchSpace {
         }
     }
 
-    /// Returns the number of entries of a vector.
     pub(super) fn len(&self) -> usize {
         self.limits.len() * (1 + 2 * self.harmonics)
     }

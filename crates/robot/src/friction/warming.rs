@@ -18,7 +18,6 @@ pub enum WarmingBy {
 }
 
 impl WarmingBy {
-    /// Returns the unit of the rates.
     #[must_use]
     pub(crate) fn rate_unit(self) -> &'static str {
         match self {

@@ -52,13 +52,11 @@ impl<'a> UrdfTree<'a> {
         Ok(JointChain { base, joints })
     }
 
-    /// Returns the joints from a link towards the root.
     pub(super) fn above(&self, link: &'a str) -> impl Iterator<Item = usize> {
         let carrier = |link: &str| self.carrier.get(link).copied();
         core::iter::successors(carrier(link), move |k| carrier(self.joints[*k].parent))
     }
 
-    /// Returns the joints whose parent is a link.
     pub(super) fn below(&self, link: &str) -> impl Iterator<Item = usize> {
         (0..self.joints.len()).filter(move |k| self.joints[*k].parent == link)
     }
@@ -169,7 +167,6 @@ impl<'a> UrdfTree<'a> {
         self.error(joint.node, problem, &remedy)
     }
 
-    /// Makes an error for the robot as a whole.
     fn robot_error(&self, problem: String, remedy: &str) -> RobotError {
         self.error(self.document.root_element(), problem, remedy)
     }

@@ -124,7 +124,6 @@ impl<'a> UrdfTree<'a> {
         Ok(Shape::Box { size })
     }
 
-    /// Returns the factors of a mesh's coordinates.
     fn scale(&self, mesh: Node<'a, 'a>) -> Result<[f64; 3], RobotError> {
         let scale = self.triple(mesh, "scale")?.unwrap_or([1.0; 3]);
         if scale.iter().all(|factor| *factor != 0.0) {

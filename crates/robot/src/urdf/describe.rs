@@ -173,7 +173,6 @@ impl<'a> UrdfTree<'a> {
         Ok((position, self.number(limit, "velocity")?.filter(|v| *v != 0.0)))
     }
 
-    /// Returns the friction that `<dynamics>` describes.
     fn friction(&self, joint: &TreeJoint<'a>) -> Result<FrictionDescription, RobotError> {
         let Some(dynamics) = element(joint.node, "dynamics") else { return Ok(Default::default()) };
         let get = |name| Ok(self.number(dynamics, name)?.unwrap_or(0.0));

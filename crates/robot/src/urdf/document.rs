@@ -38,7 +38,6 @@ impl TreeJoint<'_> {
     }
 }
 
-/// Parses XML text; `origin` names it in errors.
 pub(super) fn parse_document<'a>(text: &'a str, origin: &str) -> Result<Document<'a>, RobotError> {
     Document::parse(text).map_err(|e| RobotError::Syntax {
         origin: origin.into(),
@@ -50,7 +49,6 @@ pub(super) fn elements<'a>(node: Node<'a, 'a>, tag: &str) -> impl Iterator<Item 
     node.children().filter(move |n| n.is_element() && n.tag_name().name() == tag)
 }
 
-/// Returns the first child element with a tag.
 pub(super) fn element<'a>(node: Node<'a, 'a>, tag: &str) -> Option<Node<'a, 'a>> {
     elements(node, tag).next()
 }
@@ -163,7 +161,6 @@ impl<'a> UrdfTree<'a> {
         }
     }
 
-    /// Returns the first child element with a tag.
     pub(super) fn child(&self, node: Node<'a, 'a>, tag: &str) -> Result<Node<'a, 'a>, RobotError> {
         element(node, tag).ok_or_else(|| self.error(node, format!("<{tag}> is missing"), "add it"))
     }
@@ -223,7 +220,6 @@ impl<'a> UrdfTree<'a> {
         Ok((get("xyz")?, get("rpy")?))
     }
 
-    /// Returns the placement that the `<origin>` in an element describes.
     pub(super) fn placement_of(&self, node: Node<'a, 'a>) -> Result<Placement, RobotError> {
         let (translation, [roll, pitch, yaw]) = self.origin_of(node)?;
         let rotation = Rotation3::from_euler_angles(roll, pitch, yaw).into_inner();

@@ -11,7 +11,6 @@ use nalgebra::Vector3;
 const MOST_LEADERS: usize = 100;
 
 impl<'a> TreeJoint<'a> {
-    /// Returns the name of the joint that this one mimics.
     pub(super) fn leader(&self) -> Option<&'a str> {
         element(self.node, "mimic").map(|mimic| mimic.attribute("joint").unwrap_or(""))
     }
@@ -115,13 +114,11 @@ impl<'a> UrdfTree<'a> {
         Ok(placement.then(&motion.motion(&axis.normalize(), position)))
     }
 
-    /// Returns the axis of a joint, of any length.
     pub(super) fn axis_of(&self, joint: &TreeJoint<'a>) -> Result<[f64; 3], RobotError> {
         let axis = element(joint.node, "axis").map(|node| self.triple(node, "xyz"));
         Ok(axis.transpose()?.flatten().unwrap_or([1.0, 0.0, 0.0]))
     }
 
-    /// Returns all joints that are locked, in the order of the file.
     pub(super) fn locked(&self) -> Vec<LockedJoint> {
         let record = |joint: &TreeJoint| {
             let (position, kind) = (joint.locked?, joint.motion()?);

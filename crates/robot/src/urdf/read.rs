@@ -150,9 +150,4 @@ impl Urdf {
     pub fn into_robot(self) -> Robot {
         self.robot
     }
-
-    /// Returns the links that the joints move, from base to tip.
-    pub fn moved_links(&self) -> impl Iterator<Item = &str> {
-        self.moved.iter().map(|m| m.link.as_str())
-    }
 }

@@ -54,7 +54,6 @@ impl Urdf {
         toml::to_string(&companion).expect("numbers and names are valid TOML")
     }
 
-    /// Makes an error about the robot to write.
     fn invalid(&self, place: String, problem: String, remedy: String) -> RobotError {
         RobotError::Invalid { origin: self.origin.clone(), place, problem, remedy }
     }
@@ -140,7 +139,6 @@ fn write_inertial(link: Node, (mass, com, inertia): &(f64, [f64; 3], [f64; 6]), 
     }
 }
 
-/// Returns the attributes of an `<inertia>`.
 fn tensor_attributes(inertia: &[f64; 6]) -> [(&'static str, String); 6] {
     let names = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
     core::array::from_fn(|k| (names[k], inertia[k].to_string()))

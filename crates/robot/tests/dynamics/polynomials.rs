@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use reachtube_robot::{Robot, Workspace};
-use reachtube_scalar::{Elementary, Interval, Scalar, TaylorPolynomial, TaylorSpace};
+use reachtube_scalar::{Interval, Scalar, SineCosine, TaylorPolynomial, TaylorSpace};
 use serde_json::Value;
 
 use crate::close::assert_close;
@@ -104,7 +104,7 @@ struct Motion {
 
 impl Motion {
     fn sin_cos(&self) -> (Vec<TaylorPolynomial>, Vec<TaylorPolynomial>) {
-        self.q.iter().map(Elementary::sin_cos).unzip()
+        self.q.iter().map(SineCosine::sin_cos).unzip()
     }
 
     /// Returns q̈ by one of the two algorithms.
@@ -244,13 +244,13 @@ fn the_extensions_off_the_circle_agree_on_it() {
 /// The dynamics over any scalar uses only ring operations and division.
 #[test]
 fn interval_series_enclose_the_series_of_numbers() {
-    fn series<C: Scalar + Elementary>(robot: &Robot) -> Vec<TaylorPolynomial<C>> {
+    fn series<C: Scalar + SineCosine>(robot: &Robot) -> Vec<TaylorPolynomial<C>> {
         let space = TaylorSpace::new(2, 3).unwrap();
         let n = robot.joint_count();
         let q: Vec<TaylorPolynomial<C>> = (0..n)
             .map(|i| TaylorPolynomial::variable_at(&space, i % 2, C::from(0.25 * i as f64)))
             .collect();
-        let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(Elementary::sin_cos).unzip();
+        let (sin, cos): (Vec<_>, Vec<_>) = q.iter().map(SineCosine::sin_cos).unzip();
         let mut out = vec![TaylorPolynomial::from(0.0); n];
         robot.aba(&sin, &cos, &q, &q, &mut Workspace::new(robot), &mut out);
         out

@@ -61,7 +61,6 @@ mod side_by_side {
         Sse2::try_new().expect("x86-64 has SSE2")
     }
 
-    /// Returns (lo, hi).
     #[inline(always)]
     fn ends(x: Interval) -> __m128d {
         sse2()._mm_set_pd(x.hi, x.lo)
@@ -75,7 +74,6 @@ mod side_by_side {
         Interval { lo: v._mm_cvtsd_f64(ends), hi: v._mm_cvtsd_f64(v._mm_unpackhi_pd(ends, ends)) }
     }
 
-    /// Returns (-x, y) of (x, y).
     #[inline(always)]
     fn flipped(x: __m128d) -> __m128d {
         sse2()._mm_xor_pd(x, sse2()._mm_set_pd(0.0, -0.0))

@@ -8,15 +8,11 @@
 //! 4. `powers`: powers, roots, absolute value, minimum and maximum.
 //! 5. `power_series`: series with a proved error bound.
 //! 6. `exponential` and `trigonometric`: exp, sin and cos by such series.
-//! 7. `inverse`: logarithm and angle, as corrected guesses.
-//! 8. `decimal`: decimal text.
 
 mod arithmetic;
 pub(crate) mod closed;
-mod decimal;
 mod ends;
 mod exponential;
-mod inverse;
 mod power_series;
 mod powers;
 mod trigonometric;

@@ -51,7 +51,6 @@ impl<'a, C: Scalar> DenseSeries<'a, C> {
     }
 }
 
-/// Returns the degree of a series with `len` coefficients.
 pub(super) fn degree(space: &TaylorSpace, len: usize) -> u32 {
     (0..=space.order()).find(|d| space.block(*d).end == len).expect("whole blocks are stored")
 }
@@ -249,7 +248,6 @@ fn add_two_rows_unrolled<C: Scalar>(
     }
 }
 
-/// Adds k x to `out`.
 #[inline(always)]
 pub(super) fn add_scaled<C: Scalar>(out: &mut [C], k: &C, x: &[C]) {
     out.iter_mut().zip(x).for_each(|(out, x)| *out += k.clone() * x.clone());

@@ -9,7 +9,7 @@ use super::space::TaylorSpace;
 use crate::scalar::Scalar;
 
 /// Returns q = b / a from b_d - Σ_i a_i q_{d-i} = a_0 q_d, where 0 < i ≤ d.
-pub(super) fn quotient<C: Scalar>(space: &TaylorSpace, b: &[C], a: &[C]) -> Vec<C> {
+fn quotient<C: Scalar>(space: &TaylorSpace, b: &[C], a: &[C]) -> Vec<C> {
     let (b, series) = (DenseSeries::full(space, b), DenseSeries::new(space, a));
     let inverse = C::one() / a[0].clone();
     let constant = |c: &C| c.clone() / a[0].clone();

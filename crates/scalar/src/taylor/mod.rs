@@ -11,7 +11,7 @@
 //! 7. `arithmetic`: sums, products and their operators.
 //! 8. `recurrence`: series whose coefficients follow degree by degree.
 //! 9. `division`: quotients.
-//! 10. `functions`: elementary functions.
+//! 10. `sine_cosine`: sine and cosine.
 //! 11. `substitution`: evaluation, composition, derivatives.
 //! 12. `map`: fast evaluation of several polynomials at once.
 
@@ -19,11 +19,11 @@ pub(crate) mod addition;
 mod arithmetic;
 mod dense;
 mod division;
-mod functions;
 pub(crate) mod map;
 pub(crate) mod monomial;
 pub(crate) mod polynomial;
 mod recurrence;
+mod sine_cosine;
 pub(crate) mod space;
 pub(crate) mod sparse;
 mod substitution;

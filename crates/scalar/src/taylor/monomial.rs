@@ -29,7 +29,6 @@ impl Packing {
         (1 << self.bits) - 1
     }
 
-    /// Returns the monomial x_i.
     pub(crate) fn variable(self, i: usize) -> u128 {
         1 << DEGREE_SHIFT | 1 << (self.bits * i as u32)
     }
@@ -42,12 +41,10 @@ impl Packing {
         (monomial >> (self.bits * i as u32)) as u32 & self.largest_exponent()
     }
 
-    /// Returns the mask of the bits that hold the exponent of variable i.
     pub(crate) fn exponent_mask(self, i: usize) -> u128 {
         u128::from(self.largest_exponent()) << (self.bits * i as u32)
     }
 
-    /// Returns the monomial with the exponent of variable i set to 0.
     pub(crate) fn without(self, monomial: u128, i: usize) -> u128 {
         monomial - u128::from(self.exponent(monomial, i)) * self.variable(i)
     }
@@ -64,7 +61,6 @@ impl Packing {
         (exponents != 0).then(|| (exponents.trailing_zeros() / self.bits) as usize)
     }
 
-    /// Packs a monomial given by the exponent of each variable.
     pub(crate) fn pack_exponents(self, exponents: &[u8]) -> u128 {
         exponents.iter().enumerate().map(|(i, e)| u128::from(*e) * self.variable(i)).sum()
     }

@@ -80,13 +80,3 @@ pub(super) fn euler_derivative<C: Scalar>(space: &TaylorSpace, a: &[C]) -> Vec<C
     }
     out
 }
-
-/// Solves D y = r for the given constant of y: divides the terms of degree d by d.
-pub(super) fn euler_integral<C: Scalar>(space: &TaylorSpace, mut r: Vec<C>, constant: C) -> Vec<C> {
-    for d in 1..=degree(space, r.len()) {
-        let k = C::from(f64::from(d));
-        r[space.block(d)].iter_mut().for_each(|c| *c /= k.clone());
-    }
-    r[0] = constant;
-    r
-}

@@ -135,7 +135,6 @@ pub(super) fn constant<C: Scalar>(c: &C) -> Vec<Term<C>> {
     if c.is_zero() { Vec::new() } else { vec![(0, c.clone())] }
 }
 
-/// Returns the partial derivative in variable i.
 pub(super) fn derivative<C: Scalar>(packing: Packing, terms: &[Term<C>], i: usize) -> Vec<Term<C>> {
     let lower = |(m, c): &Term<C>| match packing.exponent(*m, i) {
         0 => None,

@@ -11,7 +11,6 @@ use crate::taylor::polynomial::{Form, TaylorPolynomial};
 const UNDERFLOW_GUARD: f64 = 1e-290;
 
 impl TaylorModel {
-    /// Returns self · other.
     pub(super) fn product(&self, other: &Self) -> Self {
         match (self.as_number(), other.as_number()) {
             (Some(k), _) => other.scaled(k),
@@ -51,7 +50,6 @@ impl TaylorModel {
         times(&self.polynomial, s) + times(&other.polynomial, r) + r * s
     }
 
-    /// Returns k · self for a finite k.
     fn scaled(&self, k: f64) -> Self {
         if k == 0.0 {
             return Self::from(0.0);

@@ -3,7 +3,6 @@
 
 use crate::common::*;
 use num_rational::BigRational;
-use num_traits::Zero;
 use proptest::prelude::*;
 use reachtube_scalar::{Interval, rounding::*};
 
@@ -110,41 +109,6 @@ proptest! {
         );
         prop_assert!(Interval::centred(mid, rad).encloses(&x));
     }
-
-    #[test]
-    fn decimal_literals(
-        digits in "[0-9]{1,25}",
-        fraction in "[0-9]{0,25}",
-        exponent in -340..320_i32,
-        negative: bool,
-    ) {
-        let text = format!("{}{digits}.{fraction}e{exponent}", if negative { "-" } else { "" });
-        let whole: BigRational = format!("{digits}{fraction}").parse().unwrap();
-        let scale = num_traits::pow(
-            integer(10),
-            (exponent - fraction.len() as i32).unsigned_abs() as usize,
-        );
-        let size = if exponent < fraction.len() as i32 { whole / scale } else { whole * scale };
-        let value = if negative { -size } else { size };
-        assert_tight_enclosure(Interval::try_from_decimal(&text).unwrap(), &value, &value, 0);
-    }
-
-    #[test]
-    fn written_text_encloses(x in any_interval(), precision in 0..20_usize) {
-        let bounds = |text: String| {
-            let (lo, hi) = text[1..text.len() - 1].split_once(", ").unwrap();
-            [lo, hi].map(|end| match end {
-                "-inf" => Interval::new(f64::NEG_INFINITY, f64::MIN).unwrap(),
-                "inf" => Interval::new(f64::MAX, f64::INFINITY).unwrap(),
-                _ => Interval::try_from_decimal(end).unwrap(),
-            })
-        };
-        for [lo, hi] in [bounds(x.to_string()), bounds(format!("{x:.precision$}"))] {
-            prop_assert!(lo.hi() <= x.lo() && x.hi() <= hi.lo());
-        }
-        let [lo, hi] = bounds(x.to_string());
-        prop_assert!(lo.hi() >= steps_from(x.lo(), -2) && hi.lo() <= steps_from(x.hi(), 2));
-    }
 }
 
 /// The ulp changes at a power of two. This tests products that round to one or beside one, at every
@@ -230,22 +194,4 @@ fn nan_is_never_a_bound() {
     assert!(div_up(-1.0, 0.0).is_nan() && div_down(1.0, 0.0).is_nan() && div_up(0.0, 0.0).is_nan());
     assert!(sqrt_up(-1.0).is_nan() && sqrt_down(-1.0).is_nan() && sqrt_up(f64::NAN).is_nan());
     assert_eq!((mul_up(0.0, inf), mul_down(inf, 0.0)), (0.0, 0.0));
-}
-
-#[test]
-fn decimal_edge_cases() {
-    let parse = |text| Interval::try_from_decimal(text).unwrap();
-    assert_eq!(parse("-0.000e5"), Interval::ZERO);
-    assert_eq!(parse("1e400"), Interval::new(f64::MAX, f64::INFINITY).unwrap());
-    assert_eq!(parse("-1e-400"), Interval::new(-5e-324, 0.0).unwrap());
-    assert_eq!(
-        parse("9007199254740993"),
-        Interval::new(9007199254740992.0, 9007199254740994.0).unwrap()
-    );
-    assert_eq!(parse("1e99999999999999999999").hi(), f64::INFINITY);
-    for bad in ["", "nan", "inf", "-Infinity", "0x10", "1,5", "1e", " 1", "."] {
-        let error = Interval::try_from_decimal(bad).unwrap_err();
-        assert!(error.to_string().contains("decimal number"), "{bad}");
-    }
-    assert!(exact(5e-324) > BigRational::zero());
 }

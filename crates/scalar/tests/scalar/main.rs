@@ -5,7 +5,6 @@ mod elementary_functions;
 mod exact_rationals;
 mod exact_sums;
 mod inclusion;
-mod inverse_functions;
 mod lanes;
 mod maryada;
 mod taylor_models;

@@ -89,7 +89,6 @@ impl Body {
         &self.names[index]
     }
 
-    /// Iterates over the capsules and their ends in the frames of their joints.
     pub(crate) fn ends(&self) -> impl Iterator<Item = (&Capsule, &[Vector; 2])> {
         self.capsules.iter().zip(&self.ends)
     }

@@ -67,7 +67,6 @@ impl Frame {
         Self { rotation, origin: self.place(&inner.origin) }
     }
 
-    /// Returns the position in the outer frame of a point in this one.
     pub(crate) fn place(&self, p: &Vector) -> Vector {
         add(&image(&self.rotation, p), &self.origin)
     }

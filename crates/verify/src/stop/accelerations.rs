@@ -105,7 +105,6 @@ impl Accelerations {
         terms.fold(self.linear(i, own), |sum, term| sum + term)
     }
 
-    /// Encloses (R τ)_i under the joint's own torque.
     fn linear(&self, i: usize, own: Interval) -> Interval {
         let m = self.torque.len();
         let torque = |j: usize| if i == j { own } else { self.torque[j] };

@@ -107,7 +107,6 @@ impl<'a> Motion<'a> {
         Ok(Self { times, states: (0..times.len() * width).map(side).collect(), width })
     }
 
-    /// Takes the states of a reachable set.
     pub(crate) fn of_reach(reach: &'a SuiteReach) -> Self {
         let bounds = reach.lower.iter().zip(&reach.upper);
         let states = bounds.map(|(low, high)| Interval::point(*low).hull(Interval::point(*high)));

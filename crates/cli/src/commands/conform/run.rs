@@ -124,7 +124,6 @@ fn page_of(answer: &Answer, front_end: FrontEnd) -> Result<Page> {
     Ok(page(&sources)?)
 }
 
-/// Writes the page, and returns where it is.
 fn report(answer: &Answer, front_end: FrontEnd, folder: &Path) -> Result<PathBuf> {
     report_files::write_page(&page_of(answer, front_end)?, Assets::Inside, folder)
 }

@@ -9,7 +9,6 @@ use super::arguments::Arguments;
 use crate::error::{Error, NO_TORQUE, Result};
 use crate::expansion::expansion_point;
 
-/// Returns the robot, or the model in the file that `--abstraction` names.
 pub(super) fn basis(args: &Arguments) -> Result<Basis> {
     Ok(match &args.abstraction {
         None => args.lock.load(args.robot.as_deref().unwrap_or_default())?.into(),

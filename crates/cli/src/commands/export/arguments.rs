@@ -129,7 +129,6 @@ pub(crate) enum Target {
 }
 
 impl Target {
-    /// Returns its name for messages.
     fn name(self) -> String {
         match self {
             Self::Mjcf => "MuJoCo".into(),
@@ -172,7 +171,6 @@ pub(super) fn write_all<'a>(
     output::write_all(paths.iter().zip(files.map(|file| file.text.as_bytes())))
 }
 
-/// Loads the robot that is named, or the robot of the model.
 pub(super) fn load_robot(args: &Arguments) -> Result<Robot> {
     match (&args.robot, &args.model) {
         (Some(robot), _) => args.lock.load(robot),

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use reachtube::export::robot::{mjcf_files, updated_urdf_files, urdf_files};
 use reachtube::export::{ExportCase, ExportError, ExportFile, InputForm, Meaning, Tool, files};
+use reachtube::finding::Table;
 use reachtube::{Robot, write};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -19,7 +20,6 @@ use crate::error::{Error, Result};
 use crate::file_names;
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::table;
 
 /// The result of `export` of a robot.
 #[derive(Serialize, JsonSchema)]
@@ -140,10 +140,10 @@ fn model(args: &Arguments, tool: Tool, json: bool) -> Result<Outcome> {
 }
 
 fn summary(tool: Tool, written: &[Written]) -> String {
-    let rows: Vec<_> = written.iter().map(Written::row).collect();
+    let rows = written.iter().map(Written::row).collect();
     format!(
         "exported to {tool}\n{}",
-        table(&["suite", "run", "states", "samples", "input", "folder"], &rows)
+        Table::new(["suite", "run", "states", "samples", "input", "folder"], rows)
     )
 }
 

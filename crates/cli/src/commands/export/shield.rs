@@ -1,6 +1,7 @@
 //! `reachtube export --to sara-shield`.
 
 use reachtube::arm::ArmModel;
+use reachtube::finding::Table;
 use std::path::{Path, PathBuf};
 
 use reachtube::Robot;
@@ -15,7 +16,6 @@ use super::arguments::{Arguments, open, write_all};
 use crate::error::Result;
 use crate::outcome::Outcome;
 use crate::output;
-use crate::table::table;
 
 /// Writes what the shield reads of a model over recordings.
 pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
@@ -84,12 +84,12 @@ fn text(shield: &Shield, paths: &[PathBuf]) -> String {
         let time = format!("{:.3}", margin.time);
         vec![margin.joint.clone(), at_least(margin.distance), margin.case.clone(), time]
     };
-    let rows: Vec<_> = shield.margins.iter().map(row).collect();
+    let rows = shield.margins.iter().map(row).collect();
     let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
     format!(
         "exported to the SaRA shield: secure_radius {} m is proved\n{}  {}\n",
         at_least(shield.secure_radius),
-        table(&["link of", "margin [m]", "motion", "at [s]"], &rows),
+        Table::new(["link of", "margin [m]", "motion", "at [s]"], rows),
         paths.join("\n  ")
     )
 }

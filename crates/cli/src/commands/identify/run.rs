@@ -38,7 +38,6 @@ fn text(found: &Identification) -> String {
     format!("{}: identified\n\n{}", found.description.name, found.report())
 }
 
-/// Returns the files that the arguments select.
 fn outputs(args: &Arguments) -> Vec<PathBuf> {
     let page = args.report.as_ref().map(|folder| page_in(folder));
     let companion = args.urdf.as_ref().map(|path| path.with_extension("toml"));

@@ -4,14 +4,13 @@ use std::fmt::Write;
 
 use reachtube::conform::data::Signals;
 use reachtube::conform::monitor::{Alarm, HealthyMotion, Leave, Monitor, Totals};
-use reachtube::finding::{Code, Finding};
+use reachtube::finding::{Code, Finding, Table};
 use reachtube::recordings::State;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::Result;
 use crate::output;
-use crate::table::table;
 
 /// Prints events and the summary, as text or as one JSON object per line.
 pub(super) struct Events {
@@ -181,9 +180,9 @@ impl Events {
             let cells = values.into_iter().map(percent);
             std::iter::once(self.signals.parts[joint].name.clone()).chain(cells).collect()
         };
-        let rows: Vec<Vec<String>> = (0..n).map(row).collect();
+        let rows = (0..n).map(row).collect();
         let header = ["joint", "q used [%]", "qd used [%]", "drift of q [%]", "drift of qd [%]"];
-        let _ = write!(text, "\n{}", table(&header, &rows));
+        let _ = write!(text, "\n{}", Table::new(header, rows));
         output::print(&text)
     }
 }
