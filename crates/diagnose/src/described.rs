@@ -7,14 +7,14 @@ use reachtube_robot::Robot;
 use crate::agreement::median;
 use crate::change::Change;
 use crate::contradiction::{Contradiction, names};
+use crate::described_units::{CLEAR, EXPLAINS, FACTOR, FEWER_SAMPLES, unit_meant};
 use crate::hypothesis::Hypothesis;
 use crate::likeliest::{Misfit, likeliest_fault};
 use crate::moments::{JointTerms, Moments, Terms, gravity, inertia, recorded};
 use crate::signals::{Signals, move_alike};
 
-/// Numbers of samples that are compared, once and for each of many faults.
+/// Number of samples that are compared once.
 const SAMPLES: usize = 4000;
-const FEWER_SAMPLES: usize = 1500;
 
 /// Offsets of a position beyond this are no small error of its zero, rad or m.
 const OFFSET: f64 = 0.05;
@@ -35,20 +35,12 @@ const SIZES: [f64; 2] = [0.5, 2.0];
 /// Angles beyond which gravity has another direction, and beyond which it has the opposite one.
 const ANGLES: [f64; 2] = [0.35, 2.6];
 
-/// A hypothesis is named if the product over the joints of the parts that it leaves of what is
-/// unexplained otherwise, in recordings that are left out, is below this.
-const CLEAR: f64 = 0.1;
-
 /// A hypothesis explains no less than another one if it leaves at most this times as much, as the
 /// product over the joints.
 const SCALED: f64 = 2.0;
 
 /// Standard errors by which a factor must differ from 0.
 const SIGNIFICANT: f64 = 4.0;
-
-/// Torques whose median size differs from what the description needs by more than this factor are
-/// named. Published descriptions are off by a factor of 3 at times.
-const FACTOR: f64 = 5.0;
 
 /// A description with wrong masses leaves more than this part of the squares of a torque; where
 /// less is left, factors that differ by more than [`UNEVEN`] from joint to joint are units.
@@ -60,9 +52,6 @@ const DISSIPATES: f64 = 1e-3;
 
 /// Part of the squares of a torque that is left where nothing explains it.
 const NOISE: f64 = 0.9;
-
-/// A description explains a torque if it leaves less than this part of what friction leaves.
-const EXPLAINS: f64 = 0.5;
 
 /// How recorded torques compare with the ones that a robot's description needs, which must have
 /// masses and contain gravity.
@@ -126,7 +115,14 @@ impl<'a> Described<'a> {
     pub fn contradictions(&self) -> (Vec<Contradiction>, usize) {
         let count = self.moving().filter(|joint| self.is_explained(*joint)).count();
         let found = self.noise().or_else(|| self.without_gravity()).or_else(|| self.mount());
-        let mut found = found.map_or_else(|| self.scales(), |found| vec![found]);
+        let scales = self.scales();
+        if found.is_none()
+            && (2 * count <= self.joints.len() || scales.iter().any(|found| found.is_certain))
+            && let Some((unit, count)) = unit_meant(self.robot, &self.recordings, self.kind)
+        {
+            return (vec![unit], count);
+        }
+        let mut found = found.map_or(scales, |found| vec![found]);
         if found.is_empty() {
             found.extend(self.fault());
         }

@@ -21,6 +21,7 @@ mod axes;
 mod change;
 mod contradiction;
 mod described;
+mod described_units;
 mod free_misfit;
 mod hypothesis;
 mod late;

@@ -211,6 +211,33 @@ fn a_zero_that_is_off_is_named_with_its_joint() {
 }
 
 #[test]
+fn another_unit_of_the_description_is_named() {
+    let robot = Robot::lwa4p();
+    let recordings: Vec<Recording> = (1..=4).map(|seed| Recording::new(&robot, seed)).collect();
+    let cases = [
+        ([1e3, 1.0, 1.0], "the distances between joints of the description are probably in mm"),
+        ([1e2, 1e2, 1.0], "centres of mass of the description are probably in cm"),
+        ([1.0, 1.0, 1e6], "the moments of inertia of the description are probably in kg mm²"),
+    ];
+    for ([distance, centre, inertia], words) in cases {
+        let mut description = robot.description().clone();
+        for joint in &mut description.joints {
+            let dh = joint.dh.as_mut().unwrap();
+            [&mut dh.a, &mut dh.d].into_iter().for_each(|length| *length *= distance);
+            joint.com.iter_mut().flatten().for_each(|length| *length *= centre);
+            let moments = joint.gravity_moments.iter_mut();
+            moments.flat_map(|own| &mut own.first_moment).for_each(|moment| *moment *= centre);
+            joint.inertia.iter_mut().for_each(|moment| *moment *= inertia);
+        }
+        let other = Robot::from_description(&description).unwrap();
+        let signals = recordings.iter().map(Recording::signals).collect();
+        let (found, count) = Described::new(&other, Torque::Motor, signals).contradictions();
+        assert_named(&found, words);
+        assert!(2 * count >= N, "{count}: {found:?}");
+    }
+}
+
+#[test]
 fn joints_that_move_alike_are_not_called_exchanged() {
     let robot = Robot::lwa4p();
     let mut recordings: Vec<Recording> = (1..=4).map(|seed| Recording::new(&robot, seed)).collect();

@@ -9,8 +9,8 @@ const LINES: usize = 18;
 /// Smallest number of rows that a table keeps.
 const FEWEST_ROWS: usize = 2;
 
-/// An answer for people on at most 18 lines of 100 columns. The
-/// [`Report`](crate::Report) has the rest.
+/// An answer for people on at most 18 lines of 100 columns, unless the first warning, which is
+/// printed in full, needs more. The [`Report`](crate::Report) has the rest.
 ///
 /// # Examples
 ///
@@ -69,17 +69,16 @@ impl Summary {
         table
     }
 
-    /// Returns the warnings that fit on some lines, and the number of the others.
+    /// Returns the first warning, the others that fit on some lines, and the number of the rest.
     fn warnings_within(&self, lines: usize) -> Vec<String> {
         let mut all = Vec::new();
         for (index, warning) in self.warnings.iter().enumerate() {
             let own = wrapped(&format!("warning: {warning}"));
             let others = self.warnings.len() - index;
             let reserved = usize::from(others > 1);
-            if all.len() + own.len() + reserved > lines {
+            if index > 0 && all.len() + own.len() + reserved > lines {
                 let word = if others == 1 { "warning" } else { "warnings" };
-                let more = if index == 0 { "" } else { "more " };
-                all.push(format!("warning: {others} {more}{word} in the whole report"));
+                all.push(format!("warning: {others} more {word} in the whole report"));
                 break;
             }
             all.extend(own);
@@ -109,13 +108,7 @@ impl fmt::Display for Summary {
         let [before, after] = self.fixed();
         let room = LINES.saturating_sub(before.len() + after.len());
         let rows = self.table.rows.len();
-        // Where not all fits, the first warning stays, and the most important rows.
-        let least_table = 1 + rows.min(FEWEST_ROWS + 1);
-        let first =
-            self.warnings.first().map_or(0, |first| wrapped(&format!("warning: {first}")).len());
-        let first =
-            (first + usize::from(self.warnings.len() > 1)).min(room.saturating_sub(least_table));
-        let warnings = self.warnings_within(room.saturating_sub(1 + rows).max(first).max(1));
+        let warnings = self.warnings_within(room.saturating_sub(1 + rows));
         let table = self.table_within(room.saturating_sub(warnings.len()));
         for line in [before, table, warnings, after].concat() {
             writeln!(f, "{}", printable(&line))?;
@@ -170,7 +163,8 @@ mod tests {
         for rows in [0, 1, 2, 3, 6, 7, 30] {
             for warnings in [0, 1, 2, 3, 40] {
                 let text = long(rows, warnings).to_string();
-                assert!(text.lines().count() <= LINES, "{rows} {warnings}: {text}");
+                // Two rows, their header and their number stay beside a long first warning.
+                assert!(text.lines().count() <= LINES + 1, "{rows} {warnings}: {text}");
                 assert!(text.lines().all(|line| line.chars().count() <= COLUMNS), "{text}");
                 assert!(text.contains("\nnext: ") && text.starts_with("conformant"), "{text}");
                 assert_eq!(text.contains("  joint"), rows > 0, "{text}");
@@ -190,6 +184,9 @@ mod tests {
         let text = long(30, 2).to_string();
         assert!(text.contains("\nwarning: U reaches"), "{text}");
         assert!(text.contains("\nwarning: 1 more warning in the whole report\n"), "{text}");
+        let warnings = vec!["The torques come later than the motion. ".repeat(12)];
+        let text = Summary { warnings, ..long(30, 1) }.to_string();
+        assert_eq!(text.matches("come later").count(), 12, "the first warning is whole: {text}");
         let text = long(3, 40).to_string();
         assert!(text.contains("more warnings in the whole report\n"), "{text}");
     }

@@ -82,7 +82,7 @@ impl Built {
                 "held-out motions could not be followed".into()
             }
             Some((joint, factor)) => format!(
-                "held-out motions need {factor:.1} times the set of {} (at most {} is accepted),",
+                "held-out motions need {factor:.2} times the set of {} (at most {} is accepted),",
                 self.answer.model.signals.parts[joint].name,
                 self.largest_growth()
             ),

@@ -13,6 +13,7 @@ use reachtube_conform::next_motion::LeftOut;
 use reachtube_finding::Finding;
 
 use crate::carried_over::{Unseen, unseen};
+use crate::checked_choices::LARGEST_RADIUS;
 use crate::error::Result;
 use crate::findings::not_enclosed;
 use crate::foretold::Foretold;
@@ -93,6 +94,18 @@ impl Widened {
         Ok(Self { answer, allowance, reason, finding, foretold })
     }
 
+    /// Returns these sets with the reason for the allowance of sets `before`, which faster motions
+    /// left; with it, the part `outside` of their rows does.
+    pub(crate) fn because(self, before: &Self, outside: f64) -> Self {
+        let reason = format!(
+            "{}; with it, {:.1} % of the rows of the faster half of the motions leave the sets of \
+             the slower half, as is accepted",
+            before.reason,
+            100.0 * outside
+        );
+        Self { reason, finding: before.finding.clone(), ..self }
+    }
+
     pub(crate) fn words(&self) -> String {
         let joints = &self.answer.model.signals.parts;
         let of_input = self.allowance.iter().skip(2 * joints.len()).copied().enumerate();
@@ -138,7 +151,14 @@ fn asked(answer: &Answer, all: &[Unseen], most: [f64; 2]) -> Asked {
     };
     let factor = upper_bound(&factors);
     let radius = |radius: &f64| rounded_up(share * factor * radius, 3);
-    let allowance = needed.shape.iter().map(radius).collect();
+    let allowance: Vec<f64> = needed.shape.iter().map(radius).collect();
+    if !allowance.iter().all(|radius| *radius <= LARGEST_RADIUS) {
+        return (
+            Vec::new(),
+            format!("{leave}; no allowance of a sensible size encloses them"),
+            None,
+        );
+    }
     let largest = factors.iter().copied().fold(0.0, f64::max);
     let starts = if needed.shape[0] > 0.0 { "X0 and " } else { "" };
     let mut reason = format!(
@@ -248,6 +268,10 @@ mod tests {
         assert_eq!((finding.code.name(), finding.place.as_deref()), ("left-out", Some("b")));
         assert_eq!(finding.severity, Severity::Warning);
         assert!(finding.text.contains("enclose b, which was left out"), "{finding}");
+        // As the sets of a constant motion, which any other motion leaves by far.
+        left_out[1].factor = Some(1e300);
+        let (allowance, reason, _) = asked(&answer, &left_out, [0.0, f64::INFINITY]);
+        assert!(allowance.is_empty() && reason.contains("no allowance of a sensible size"));
         // What is accepted anyway needs none.
         assert_eq!(asked(&answer, &left_out, [1.0, f64::INFINITY]).2, None);
     }

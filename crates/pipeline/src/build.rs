@@ -192,11 +192,12 @@ impl Decided<'_> {
         let recordings = Prepared { logs, origins, from_start, divides: true, simulated, shortest };
         let found = sets(&mut chooser, &mut trial, &recordings);
         let (found, horizons) = found.map_err(|error| error.because(&findings))?;
-        let Widened { mut answer, finding, foretold, .. } = found;
         let horizon = chooser.choices.horizon.unwrap_or_default();
+        let (without_model, found) =
+            WithoutModel::beside(found, &trial, &recordings, (horizon, &chooser.choices))?;
+        chooser.choose_allowance(&found);
+        let Widened { mut answer, finding, .. } = found;
         findings.extend(finding.into_iter().chain(measures_the_filter(horizon, shortest)));
-        let without = || WithoutModel::new(&trial, &recordings, horizon, &foretold);
-        let without_model = (!trial.equations.is_kinematic()).then(without).transpose()?;
         let choices = &chooser.choices;
         answer.model = self.recorded(answer.model, preparation(choices, torque, logs));
         let better = without_model.as_ref().filter(|without| !without.is_model_better());
@@ -208,7 +209,6 @@ impl Decided<'_> {
             true => Vec::new(),
             false => wide.remedies(self.evidence, self.robot)?,
         };
-        // What was held out.
         let raw: Vec<_> = split.held_out.iter().map(|other| RawLog::clone(&other.log)).collect();
         let held_back = prepare_for(&raw, &robot, torque, settings, cut_off)?;
         let held_back = Prepared { logs: &held_back, divides: false, ..recordings };
@@ -281,8 +281,6 @@ fn sets(
     horizons.sort_by(|a, b| a.horizon.total_cmp(&b.horizon));
     chooser.choose("horizon", format!("{horizon} s"), reason);
     chooser.choices.horizon = Some(horizon);
-    chooser.choose("allowance", found.words(), &found.reason);
-    chooser.choices.allowance = Some(found.allowance.clone());
     Ok((found, horizons))
 }
 

@@ -6,7 +6,7 @@ use crate::choices::Choices;
 use crate::error::{Error, Result};
 
 /// The largest radius of a set.
-const LARGEST_RADIUS: f64 = 1e9;
+pub(crate) const LARGEST_RADIUS: f64 = 1e9;
 
 impl Choices {
     /// Checks choices for a robot with a number of joints and a kind of torques.

@@ -2,6 +2,7 @@
 
 use reachtube_conform::Progress;
 
+use crate::allowance::Widened;
 use crate::choices::{Choice, Choices};
 use crate::held_out::Split;
 
@@ -31,5 +32,10 @@ impl Chooser<'_> {
         let names = if split.names.is_empty() { "the end".into() } else { split.names.join(", ") };
         self.choose("held-out", names, &split.reason);
         self.choices.held_out = (!split.names.is_empty()).then(|| split.names.clone());
+    }
+
+    pub(crate) fn choose_allowance(&mut self, found: &Widened) {
+        self.choose("allowance", found.words(), &found.reason);
+        self.choices.allowance = Some(found.allowance.clone());
     }
 }

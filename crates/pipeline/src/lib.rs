@@ -12,6 +12,7 @@ mod compared;
 mod contradicted;
 mod cut;
 mod error;
+mod faster;
 mod files;
 mod findings;
 mod first_choices;

@@ -1,7 +1,7 @@
 /// Rounds up to a number of digits.
 pub(crate) fn rounded_up(value: f64, digits: i32) -> f64 {
-    if value <= 0.0 {
-        return 0.0;
+    if value <= 0.0 || !value.is_finite() {
+        return value.max(0.0);
     }
     let exponent = value.log10().floor() as i32 + 1 - digits;
     let digits = (value / 10f64.powi(exponent)).ceil();
@@ -20,7 +20,8 @@ mod tests {
 
     #[test]
     fn numbers_are_rounded_up_to_their_digits() {
-        let rounded = [0.0, 1.2301e-3, 1.25, 98.71].map(|value| rounded_up(value, 3));
-        assert_eq!(rounded, [0.0, 1.24e-3, 1.25, 98.8]);
+        let rounded = [0.0, 1.2301e-3, 1.25, 98.71, 1e301, f64::INFINITY];
+        let rounded = rounded.map(|value| rounded_up(value, 3));
+        assert_eq!(rounded, [0.0, 1.24e-3, 1.25, 98.8, 1e301, f64::INFINITY]);
     }
 }

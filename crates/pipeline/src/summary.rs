@@ -88,7 +88,7 @@ impl Built {
         if let Some(allowance) = self.allowance_words() {
             // The factor is about the sets without an allowance.
             summary.facts.retain(|(name, _)| name != LEFT_OUT);
-            summary.fact("allowance for motions left out in turn", allowance);
+            summary.fact("allowance for other motions", allowance);
         }
         summary.fact(NEW_MOTIONS, self.next_motion());
         for finding in &self.remedies {

@@ -5,18 +5,16 @@
 //! so that both can be compared: each with the factor by which the sets of the others have to grow
 //! for the motion that leaves them furthest.
 
-use std::collections::BTreeMap;
-
-use reachtube_arm::{ArmModel, Equations};
-use reachtube_conform::{CheckJob, Silent};
+use reachtube_arm::Equations;
 use reachtube_finding::{Finding, Table};
-use reachtube_identify::prepare::PreparedLog;
 use reachtube_scalar::number::significant;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::allowance::Widened;
-use crate::error::Result;
+use crate::choices::Choices;
+use crate::error::{Error, Result};
+use crate::faster::Halves;
 use crate::foretold::Foretold;
 use crate::horizon::MOST_WINDOWS;
 use crate::trial::Trial;
@@ -43,6 +41,10 @@ pub struct WithoutModel {
     /// Part of the rows of the faster half of the motions that lie outside the sets of the slower
     /// half, its allowance included: of the model, and without one. `None` for a single motion.
     pub faster: Option<[f64; 2]>,
+    /// The same part of the model with its allowance, where the allowance was found or given for
+    /// faster motions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faster_with_allowance: Option<f64>,
     /// The part of the rows that may lie outside.
     #[serde(skip)]
     pub(crate) largest_outside: f64,
@@ -59,6 +61,7 @@ impl WithoutModel {
         recordings: &Prepared,
         horizon: f64,
         own: &Foretold,
+        halves: Option<&Halves>,
     ) -> Result<Self> {
         let mut best: Option<(Trial, f64)> = None;
         for equations in Equations::KINEMATIC {
@@ -79,6 +82,9 @@ impl WithoutModel {
         let Widened { answer, foretold: without, .. } = Widened::new(&other, recordings, horizon)?;
         let windows = answer.model.data.run_count();
         let narrower = |joint| without.half_width(joint) / own.half_width(joint);
+        let faster = |halves: &Halves| {
+            Ok::<_, Error>([halves.part_outside(trial)?, halves.part_outside(&other)?])
+        };
         let finite = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
         Ok(Self {
             equations,
@@ -86,17 +92,71 @@ impl WithoutModel {
             widest_of: [without.widest_joint(), windows],
             widest_of_model: finite(own.widest()),
             narrower: (0..own.half_widths.len()).map(narrower).collect(),
-            faster: to_faster([trial, &other], recordings, horizon)?,
+            faster: halves.map(faster).transpose()?,
+            faster_with_allowance: None,
             largest_outside: trial.largest_outside,
         })
+    }
+
+    /// Compares sets as [`new`](Self::new) does, if the model knows the robot or its torque, and
+    /// widens them by the least allowance with which the slower motions would have foretold the
+    /// faster ones, if they do not, but are narrower than without a model. Sets that become too
+    /// wide stay as they are. An allowance that was given is tried as it is.
+    ///
+    /// # Errors
+    ///
+    /// As [`Widened::new`].
+    pub(crate) fn beside(
+        mut found: Widened,
+        trial: &Trial,
+        recordings: &Prepared,
+        (horizon, choices): (f64, &Choices),
+    ) -> Result<(Option<Self>, Widened)> {
+        if trial.equations.is_kinematic() {
+            return Ok((None, found));
+        }
+        let halves = Halves::new(recordings, horizon);
+        let mut own = Self::new(trial, recordings, horizon, &found.foretold, halves.as_ref())?;
+        let most = own.most_outside().filter(|_| choices.accept(&found.answer.model));
+        if let (Some(halves), Some(most)) = (halves, most) {
+            let needed = found.answer.found.allowance_needed.as_ref();
+            let shape = needed.filter(|_| trial.allowance.is_none()).map(|needed| &needed.shape);
+            let radii = (&*found.allowance, shape.map_or(&[][..], |shape| shape));
+            if let Some((allowance, part)) = halves.allowance(trial, radii, most)? {
+                let is_same = allowance == found.allowance;
+                let trial = Trial { allowance: Some(allowance), ..trial.clone() };
+                let wider = || Widened::new(&trial, recordings, horizon);
+                let wider = (!is_same).then(wider).transpose()?;
+                let is_narrow = |wider: &Widened| choices.accept(&wider.answer.model);
+                if wider.as_ref().is_none_or(is_narrow) {
+                    own.faster_with_allowance = Some(part);
+                    found = match wider {
+                        None => found,
+                        Some(wider) => wider.because(&found, part),
+                    };
+                }
+            }
+        }
+        Ok((Some(own), found))
     }
 
     /// Returns whether the model is worth having: its sets are narrower than without one, and of
     /// faster motions no more rows lie outside than accepted, or than without one.
     #[must_use]
     pub(crate) fn is_model_better(&self) -> bool {
-        let carries_over = |[own, without]: [f64; 2]| own <= without.max(self.largest_outside);
-        self.gain() > 1.0 && self.faster.is_none_or(carries_over)
+        self.gain() > 1.0 && self.too_many_outside().is_none()
+    }
+
+    /// Returns the part of the rows of faster motions that may lie outside, if more lie outside
+    /// although the sets are narrower than without a model.
+    fn most_outside(&self) -> Option<f64> {
+        self.too_many_outside().filter(|_| self.gain() > 1.0)
+    }
+
+    fn too_many_outside(&self) -> Option<f64> {
+        let [own, without] = self.faster?;
+        let most = without.max(self.largest_outside);
+        (self.faster_with_allowance.unwrap_or(own) > most).then_some(most)
     }
 
     /// Returns the geometric mean over the joints of the factor by which sets are narrower.
@@ -145,7 +205,10 @@ impl WithoutModel {
         let [own, without] = [self.widest_of_model, self.widest].map(percent);
         let faster = self.faster.map_or_else(String::new, |[own, without]| {
             let [own, without] = [own, without].map(|part| percent(Some(part)));
-            format!("; of faster motions {without} outside (with it {own})")
+            let allowed = self.faster_with_allowance.map_or_else(String::new, |part| {
+                format!(", with its allowance {}", percent(Some(part)))
+            });
+            format!("; of faster motions {without} outside (with it {own}{allowed})")
         });
         let times = match self.gain() {
             gain if gain.is_finite() => format!("sets {} times as wide, the", significant(gain, 2)),
@@ -158,7 +221,7 @@ impl WithoutModel {
 fn percent(part: Option<f64>) -> String {
     match part {
         None => "without bound".into(),
-        Some(part) if part > 0.0 && part < 0.01 => format!("{:.1} %", 100.0 * part),
+        Some(part) if part > 0.0 && part < 0.1 => format!("{:.1} %", 100.0 * part),
         Some(part) => format!("{:.0} %", 100.0 * part),
     }
 }
@@ -166,69 +229,6 @@ fn percent(part: Option<f64>) -> String {
 /// Returns the trial without a model.
 fn kinematic<'a>(trial: &Trial<'a>, equations: Equations) -> Trial<'a> {
     Trial { equations, allowance: None, folds: &[], fit: None, ..trial.clone() }
-}
-
-/// Returns which part of the rows of the faster half of the motions lies outside the sets of the
-/// slower half, with the allowance that this half asks for, for each of some trials. A motion is as
-/// fast as its largest acceleration beside the root mean square of all.
-fn to_faster(trials: [&Trial; 2], recordings: &Prepared, horizon: f64) -> Result<Option<[f64; 2]>> {
-    let [slower, faster] = by_speed(recordings);
-    if slower.is_empty() || recordings.from_start {
-        return Ok(None);
-    }
-    let slower = Prepared { logs: &slower, ..*recordings };
-    let faster = Prepared { logs: &faster, divides: false, ..*recordings };
-    let part_outside = |trial: &Trial| -> Result<f64> {
-        let trial = Trial { allowance: None, fit: None, ..trial.clone() };
-        let model = Widened::of_some(&trial, &slower, horizon, MOST_WINDOWS)?.answer.model;
-        let setup = model.setup()?;
-        let check = CheckJob::new(model, setup, faster.cut(horizon, MOST_WINDOWS)?);
-        let verdict = check.run(&Silent)?.verdict;
-        Ok(verdict.violations.count as f64 / verdict.rows.max(1) as f64)
-    };
-    let outside = |trial: &Trial| match part_outside(trial) {
-        Err(error) if trial.progress.is_cancelled() => Err(error),
-        // A motion that cannot be followed is not foretold.
-        part => Ok(part.unwrap_or(1.0)),
-    };
-    let [own, without] = trials.map(outside);
-    Ok(Some([own?, without?]))
-}
-
-/// Returns the recordings of the slower and of the faster half of the motions; none of a single
-/// motion.
-fn by_speed(recordings: &Prepared) -> [Vec<PreparedLog>; 2] {
-    let Some(n) = recordings.logs.first().map(|log| log.joints) else { return Default::default() };
-    let square = |joint: usize| {
-        let values =
-            recordings.logs.iter().flat_map(move |log| log.qdd.iter().skip(joint).step_by(n));
-        values.map(|qdd| qdd * qdd).sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
-    };
-    let scales: Vec<f64> = (0..n).map(square).collect();
-    let peak = |log: &PreparedLog| {
-        let rows = log.qdd.chunks_exact(n).flat_map(|row| row.iter().zip(&scales));
-        rows.map(|(qdd, scale)| qdd.abs() / scale).fold(0.0, f64::max)
-    };
-    let logs = recordings.logs.iter().map(|log| (recordings.motion(&log.name), peak(log)));
-    let slow = slower_half(logs);
-    if slow.is_empty() {
-        return Default::default();
-    }
-    let is_slow = |log: &&PreparedLog| slow.contains(&recordings.motion(&log.name));
-    let (slower, faster) = recordings.logs.iter().partition::<Vec<&PreparedLog>, _>(is_slow);
-    [slower, faster].map(|logs| logs.into_iter().cloned().collect())
-}
-
-/// Returns the slower half of the motions of some logs, each with the speed of a log.
-fn slower_half<'a>(logs: impl Iterator<Item = (&'a str, f64)>) -> Vec<&'a str> {
-    let mut motions: BTreeMap<&str, f64> = BTreeMap::new();
-    for (motion, speed) in logs {
-        let fastest = motions.entry(motion).or_insert(speed);
-        *fastest = fastest.max(speed);
-    }
-    let mut motions: Vec<(&str, f64)> = motions.into_iter().collect();
-    motions.sort_by(|a, b| a.1.total_cmp(&b.1));
-    motions.iter().take(motions.len() / 2).map(|(motion, _)| *motion).collect()
 }
 
 #[cfg(test)]
@@ -245,6 +245,7 @@ mod tests {
             widest_of_model,
             narrower,
             faster,
+            faster_with_allowance: None,
             largest_outside: 0.01,
         }
     }
@@ -259,8 +260,14 @@ mod tests {
         assert_eq!(
             better.words(),
             "sets 2 times as wide, the widest 90 % (with it 30 %); of faster motions 20 % outside \
-             (with it 1 %)"
+             (with it 1.0 %)"
         );
+        let allowed = WithoutModel {
+            faster_with_allowance: Some(0.01),
+            ..compared(vec![4.0], Some([0.02, 0.0]))
+        };
+        assert!(allowed.is_model_better());
+        assert!(allowed.words().ends_with("(with it 2.0 %, with its allowance 1.0 %)"));
         let wider = compared(vec![0.5, 1.9], None);
         assert!(!wider.is_model_better() && wider.why_better().contains("no wider, 0.97 times as"));
         let slower = compared(vec![2.0, 2.0], Some([0.4, 0.1]));
@@ -271,12 +278,5 @@ mod tests {
         assert_eq!(lost.words(), "the widest without bound (with it 30 %)");
         // Neither foretells anything.
         assert!(!compared(vec![f64::NAN], None).is_model_better());
-    }
-
-    #[test]
-    fn the_slower_half_of_the_motions_has_the_smaller_accelerations() {
-        let logs = [("a", 3.0), ("b", 1.0), ("c", 2.0), ("d", 9.0), ("b", 1.5), ("a", 1.0)];
-        assert_eq!(slower_half(logs.into_iter()), ["b", "c"]);
-        assert!(slower_half(logs.into_iter().take(1)).is_empty());
     }
 }

@@ -11,7 +11,7 @@ use crate::fixture::Lab;
 use crate::output_schema::fits;
 
 /// Two links in a vertical plane. The factor is of their masses.
-fn arm(factor: f64) -> String {
+pub(crate) fn arm(factor: f64) -> String {
     let joint = |name: &str, height: f64, mass: f64, inertia: f64| {
         let (mass, inertia) = (factor * mass, factor * inertia);
         format!(
@@ -59,9 +59,14 @@ fn log(robot: &Robot, number: usize) -> Vec<Row> {
 /// Writes four logs into the folder `logs`, each row changed by `change` with its number and the
 /// number of its log. Rows without a time are lost.
 pub(crate) fn write(lab: &Lab, change: &dyn Fn(&mut Row, usize, usize)) {
+    write_logs(lab, 4, change);
+}
+
+/// Does what [`write`] does for `count` logs.
+pub(crate) fn write_logs(lab: &Lab, count: usize, change: &dyn Fn(&mut Row, usize, usize)) {
     let robot = Robot::from_toml(&arm(1.0), "arm").unwrap();
     std::fs::create_dir_all(lab.path("logs")).unwrap();
-    for number in 0..4 {
+    for number in 0..count {
         let mut text = String::from("t,q1,q2,qd1,qd2,tau1,tau2\n");
         for (k, mut row) in log(&robot, number).into_iter().enumerate() {
             change(&mut row, k, number);
