@@ -14,7 +14,7 @@ fn model(lab: &Lab, choices: &str) -> Run {
 fn sets_get_an_allowance_for_faster_motions_that_leave_those_of_slower_ones() {
     let lab = lab();
     write_logs(&lab, 8, &|_, _, _| ());
-    // Of the faster half of the motions, 0.96 % of the rows leave the sets of the slower half.
+    // The faster half of the motions has 0.96 % of its rows outside the sets of the slower half.
     let without = model(&lab, "largest-outside = 0.01\n").exits(0).json();
     fits("model", &without);
     assert_eq!(without["without_model"].get("faster_with_allowance"), None);
