@@ -110,9 +110,9 @@ pub(crate) fn unit_meant(
     is_clear.then(|| {
         let DescribedUnit { words, unit, factors } = unit;
         let text = format!(
-            "the {words} of the description are probably in {unit}: with them in SI units, the \
-             description explains the torque of {} of {n} joints, and as it is of {}; correct them \
-             in the robot's file",
+            "the {words} of the description are probably in {unit}: read so, the description \
+             explains the torque of {} of {n} joints, in place of {}; correct them in the robot's \
+             file",
             best.joints, stated.joints
         );
         let factor = factors.iter().copied().fold(1.0, f64::min);

@@ -1,7 +1,10 @@
 /// Rounds up to a number of digits.
 pub(crate) fn rounded_up(value: f64, digits: i32) -> f64 {
-    if value <= 0.0 || !value.is_finite() {
-        return value.max(0.0);
+    if value <= 0.0 {
+        return 0.0;
+    }
+    if !value.is_finite() {
+        return value;
     }
     let exponent = value.log10().floor() as i32 + 1 - digits;
     let digits = (value / 10f64.powi(exponent)).ceil();

@@ -118,25 +118,22 @@ impl WithoutModel {
         let halves = Halves::new(recordings, horizon);
         let mut own = Self::new(trial, recordings, horizon, &found.foretold, halves.as_ref())?;
         let most = own.most_outside().filter(|_| choices.accept(&found.answer.model));
-        if let (Some(halves), Some(most)) = (halves, most) {
-            let needed = found.answer.found.allowance_needed.as_ref();
-            let shape = needed.filter(|_| trial.allowance.is_none()).map(|needed| &needed.shape);
-            let radii = (&*found.allowance, shape.map_or(&[][..], |shape| shape));
-            if let Some((allowance, part)) = halves.allowance(trial, radii, most)? {
-                let is_same = allowance == found.allowance;
-                let trial = Trial { allowance: Some(allowance), ..trial.clone() };
-                let wider = || Widened::new(&trial, recordings, horizon);
-                let wider = (!is_same).then(wider).transpose()?;
-                let is_narrow = |wider: &Widened| choices.accept(&wider.answer.model);
-                if wider.as_ref().is_none_or(is_narrow) {
-                    own.faster_with_allowance = Some(part);
-                    found = match wider {
-                        None => found,
-                        Some(wider) => wider.because(&found, part),
-                    };
-                }
+        let Some((halves, most)) = halves.zip(most) else { return Ok((Some(own), found)) };
+        let needed = found.answer.found.allowance_needed.as_ref();
+        let shape = needed.filter(|_| trial.allowance.is_none()).map(|needed| &*needed.shape);
+        let radii = (&*found.allowance, shape.unwrap_or_default());
+        let Some((allowance, part)) = halves.allowance(trial, radii, most)? else {
+            return Ok((Some(own), found));
+        };
+        if allowance != found.allowance {
+            let trial = Trial { allowance: Some(allowance), ..trial.clone() };
+            let wider = Widened::new(&trial, recordings, horizon)?;
+            if !choices.accept(&wider.answer.model) {
+                return Ok((Some(own), found));
             }
+            found = wider.because(&found, part);
         }
+        own.faster_with_allowance = Some(part);
         Ok((Some(own), found))
     }
 
