@@ -6,6 +6,7 @@ use reachtube::campaign::RecordedCampaign;
 use reachtube::identify::Summary;
 use reachtube::pipeline::{ModelOutput, VerifyOutput};
 use reachtube::recordings::Inspection;
+use reachtube::tracking::TrackingCheck;
 use reachtube::verify::StopStudy;
 use reachtube::{Check, abstraction};
 use reachtube_files::schema_of_any;
@@ -24,6 +25,7 @@ use crate::commands::reach::ReachOutput;
 use crate::commands::report::ReportOutput;
 use crate::commands::reproduce::Numbers;
 use crate::commands::robot::RobotOutput;
+use crate::commands::tracking::TrackingOutput;
 use crate::output::ErrorOutput;
 
 /// What a schema describes.
@@ -53,6 +55,7 @@ fn results() -> Value {
             ("abstract", AbstractOutput::json_schema),
             ("campaign", RecordedCampaign::json_schema),
             ("check", Check::json_schema),
+            ("check_tracking", TrackingCheck::json_schema),
             ("convert", ConvertOutput::json_schema),
             ("demo", DemoOutput::json_schema),
             ("error", ErrorOutput::json_schema),
@@ -64,6 +67,7 @@ fn results() -> Value {
             ("inspect", Inspection::json_schema),
             ("inspect_logs", LogInspection::json_schema),
             ("model", ModelOutput::json_schema),
+            ("model_tracking", TrackingOutput::json_schema),
             ("monitor", Event::json_schema),
             ("prepare", PrepareOutput::json_schema),
             ("reach", ReachOutput::json_schema),

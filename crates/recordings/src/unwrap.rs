@@ -56,7 +56,7 @@ pub(crate) fn take_out_turns(run: &mut Run, joint: usize) -> Vec<usize> {
 }
 
 /// Takes the jumps out of positions, rad, and returns the samples to which they jumped.
-fn unwrap(q: &mut [f64]) -> Vec<usize> {
+pub(crate) fn unwrap(q: &mut [f64]) -> Vec<usize> {
     let turn = 2.0 * PI;
     let jumps = jumps(q);
     let mut shifts = Vec::with_capacity(jumps.len());

@@ -2,7 +2,9 @@
 
 use clap::Args;
 use reachtube::conform::{Check, Keep, Notion};
+use reachtube::tracking::TrackingModel;
 
+use crate::commands::tracking;
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
 use crate::global::global;
@@ -34,6 +36,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    if TrackingModel::is_at(&args.model.model) {
+        return tracking::check(args, json);
+    }
     let (opened, check, outcome) = compared(args)?;
     match json {
         true => {

@@ -80,6 +80,7 @@ fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
         columns: &columns,
         gains: false,
         torque: false,
+        command: false,
         gap_limit: args.max_gap.into(),
         until: None,
     };

@@ -20,4 +20,5 @@ pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod robot;
 pub(crate) mod stop;
+pub(crate) mod tracking;
 pub(crate) mod verify;

@@ -12,6 +12,7 @@ use reachtube::robot::{Lock, Robot};
 use reachtube::write;
 
 use crate::commands::conform::GROUPS;
+use crate::commands::tracking;
 use crate::data_arguments::TORQUES;
 use crate::error::{Error, NO_ROBOT, NO_TORQUE, Result};
 use crate::global::global;
@@ -31,6 +32,8 @@ Examples:
       every choice is made from the logs, printed, and written to arm/choices.toml
   reachtube model --settings arm/choices.toml --out again
       the same choices give the same model
+  reachtube model --data logs --out arm
+      logs of commanded and actual positions: how far the arm strays from its command
 
 If the command is killed, it continues where it was when it is run again with the same options.
 
@@ -40,7 +43,7 @@ Exit codes: 0 conformant and useful, 1 not proved conformant, 2 error, 3 too wid
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Robot: the embedded lwa4p, or a TOML or URDF file
+    /// Robot: the embedded lwa4p, or a TOML or URDF file; not needed without --torque
     #[arg(long)]
     pub robot: Option<String>,
     #[command(flatten)]
@@ -48,7 +51,8 @@ pub(crate) struct Arguments {
     /// Logs: CSV files, MCAP, rosbag2, or folders of them
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub data: Vec<PathBuf>,
-    /// Meaning of the recorded torques
+    /// Meaning of the recorded torques [default: the model is of the arm under its controller, from
+    /// commanded and actual positions]
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
     /// TOML file with choices, as this command writes it
@@ -76,6 +80,9 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    if choices(args)?.torque.is_none() {
+        return tracking::model(args, json);
+    }
     let made = Made::new(args)?;
     let outcome = made.outcome();
     if json {

@@ -167,6 +167,7 @@ impl Source {
             columns: &settings.columns,
             gains: !settings.gains.is_empty(),
             torque: true,
+            command: false,
             gap_limit: settings.gap_limit(),
             until: self.until,
         };

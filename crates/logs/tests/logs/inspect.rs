@@ -13,6 +13,7 @@ fn options(columns: &ColumnSettings) -> LoggedOptions<'_> {
         columns,
         gains: false,
         torque: false,
+        command: false,
         gap_limit: GapLimit::Usual,
         until: None,
     }

@@ -25,6 +25,8 @@ pub(super) struct Assignment {
     /// Columns of the time, for each file.
     pub time: Vec<TimeColumns>,
     pub q: Vec<Column>,
+    /// Commanded positions, where they are asked for.
+    pub command: Option<Vec<Column>>,
     pub qd: Option<Vec<Column>>,
     pub tau: Option<(Vec<Column>, TorqueKind)>,
     pub temperatures: Option<Vec<Column>>,
@@ -35,10 +37,11 @@ pub(super) struct Assignment {
 }
 
 impl Assignment {
-    pub(super) fn lists(&self) -> [(Quantity, &[Column]); 4] {
+    pub(super) fn lists(&self) -> [(Quantity, &[Column]); 5] {
         let tau = self.tau.as_ref().map(|(columns, _)| &columns[..]);
         [
             (Quantity::Position, &self.q),
+            (Quantity::Position, self.command.as_deref().unwrap_or_default()),
             (Quantity::Velocity, self.qd.as_deref().unwrap_or_default()),
             (Quantity::Torque, tau.unwrap_or_default()),
             (Quantity::Temperature, self.temperatures.as_deref().unwrap_or_default()),
@@ -103,10 +106,12 @@ impl Finder<'_> {
         let qd = find(Quantity::Velocity, &measured)?.map(|(columns, _)| columns);
         let temperatures = find(Quantity::Temperature, &measured).ok().flatten();
         let temperatures = temperatures.map(|(columns, _)| columns);
-        let tau = self.torques(&joints)?;
+        let command = self.options.command.then(|| self.commands(&joints)).transpose()?;
+        let tau = if command.is_some() { None } else { self.torques(&joints)? };
         let mut out = Assignment {
             time,
             q,
+            command,
             qd,
             tau,
             temperatures,
@@ -125,9 +130,19 @@ impl Finder<'_> {
         origins: &[Origin],
         joints: &Joints,
     ) -> Found<Option<(Vec<Column>, Vec<Column>)>> {
-        if let Some(columns) = self.given(quantity, joints)? {
-            return Ok(Some((columns, vec![])));
+        match self.given_by(key_of(quantity), joints)? {
+            Some(columns) => Ok(Some((columns, vec![]))),
+            None => self.matched(quantity, origins, joints),
         }
+    }
+
+    /// Returns the columns whose names fit a quantity, as [`find`](Self::find) does.
+    fn matched(
+        &self,
+        quantity: Quantity,
+        origins: &[Origin],
+        joints: &Joints,
+    ) -> Found<Option<(Vec<Column>, Vec<Column>)>> {
         let mut first = None;
         for origin in origins {
             let columns = self.of(quantity, *origin);
@@ -152,10 +167,9 @@ impl Finder<'_> {
         self.columns.iter().filter(fits).cloned().collect()
     }
 
-    /// Returns the columns that the settings name.
-    fn given(&self, quantity: Quantity, joints: &Joints) -> Found<Option<Vec<Column>>> {
-        let Some((key, pattern)) =
-            self.options.columns.patterns().find(|(key, _)| key_of(quantity) == *key)
+    /// Returns the columns that the settings name under a key.
+    fn given_by(&self, key: &str, joints: &Joints) -> Found<Option<Vec<Column>>> {
+        let Some((_, pattern)) = self.options.columns.patterns().find(|(own, _)| key == *own)
         else {
             return Ok(None);
         };
@@ -181,7 +195,7 @@ impl Finder<'_> {
             return Ok(joints);
         }
         let none = Joints { first, ..Joints::default() };
-        let given = self.given(Quantity::Position, &none)?;
+        let given = self.given_by(key_of(Quantity::Position), &none)?;
         let measured =
             || [Origin::Measured, Origin::Unstated].map(|o| self.of(Quantity::Position, o));
         let found = given.or_else(|| measured().into_iter().find(|columns| !columns.is_empty()));
@@ -217,6 +231,20 @@ impl Finder<'_> {
             listed(targets.iter().map(|column| column.text.as_str()))
         );
         let remedy = "log the measured positions too, such as actual_q_0, or leave the file out";
+        Err(self.defect(DefectKind::Header, problem, remedy))
+    }
+
+    fn commands(&self, joints: &Joints) -> Found<Vec<Column>> {
+        if let Some(columns) = self.given_by("r", joints)? {
+            return Ok(columns);
+        }
+        if let Some((columns, _)) = self.matched(Quantity::Position, &[Origin::Target], joints)? {
+            return Ok(columns);
+        }
+        let header = self.header();
+        let problem = format!("no column is a commanded position; the header has {header}");
+        let remedy = "log the commanded positions too, such as target_q_0, or name their columns: \
+                      --columns r=NAME_{}; to model an arm by its torques, give --torque";
         Err(self.defect(DefectKind::Header, problem, remedy))
     }
 

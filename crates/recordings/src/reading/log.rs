@@ -7,6 +7,7 @@ use sha2::{Digest, Sha256};
 
 use super::assignment::{Assignment, TorqueKind, assign};
 use super::canonical::{content, is_recording, recording};
+use super::command::commanded;
 use super::dialect::Dialect;
 use super::even_times::with_times;
 use super::joints::{Column, Joints, listed};
@@ -33,6 +34,9 @@ pub struct Logged {
     /// place of its torques where gains were announced. Torques are 0 where a log has none, which
     /// only [`LoggedOptions::torque`] = `false` accepts.
     pub run: Run,
+    /// Commanded positions, row-major K x n, rad; empty unless [`LoggedOptions::command`] asks for
+    /// them.
+    pub command: Vec<f64>,
     /// What was understood of columns and units; `None` for a file in the format of
     /// `docs/recordings.md`.
     pub understood: Option<Understood>,
@@ -71,6 +75,7 @@ pub struct Logged {
 ///     columns: &columns,
 ///     gains: false,
 ///     torque: true,
+///     command: false,
 ///     gap_limit: GapLimit::Usual,
 ///     until: None,
 /// };
@@ -90,7 +95,11 @@ pub fn read_logged(files: &[PathBuf], options: &LoggedOptions) -> Result<Logged,
         dialects = self::dialects(files, &contents)?;
     }
     let mut logged = match &dialects[..] {
-        [only] if *options.columns == ColumnSettings::default() && is_recording(only) => {
+        [only]
+            if *options.columns == ColumnSettings::default()
+                && is_recording(only)
+                && !options.command =>
+        {
             as_it_is(files, &contents[0], only, options)?
         }
         _ => {
@@ -126,7 +135,7 @@ fn as_it_is(
         None => (1..=run.joints).map(|joint| format!("joint {joint}")).collect(),
     };
     let notes = turn_notes(&mut run, files, &table, &names, options);
-    Ok(Logged { run, understood: None, notes })
+    Ok(Logged { run, command: vec![], understood: None, notes })
 }
 
 /// Takes whole turns out of the positions of revolute joints, and returns a note for each.
@@ -179,6 +188,7 @@ impl Log<'_> {
         let mut q = columns(&assignment.q);
         let mut qd = assignment.qd.as_ref().map(columns);
         let tau = assignment.tau.as_ref().map(|(list, _)| columns(list));
+        let command = assignment.command.as_ref().map(columns);
         let n = q.len();
         let revolute = revolute(options, n);
         let units = self.units(&revolute, &tables[0], &q, qd.as_deref());
@@ -214,15 +224,17 @@ impl Log<'_> {
         let name = files[0].display();
         let named = |note: String| format!("{name}: {note}");
         let mut notes: Vec<String> = assignment.notes.iter().cloned().map(named).collect();
-        notes.extend(units.notes(qd.is_some()).map(named));
+        let is_missed = qd.is_none() && command.is_none();
+        notes.extend(units.notes(!is_missed).map(named));
         notes.extend(turn_notes(&mut run, files, &tables[0], &assignment.joints, options));
         if qd.is_none() {
             differentiate(&mut run);
         }
         let dead = tau.is_some().then(|| dead_torque_note(&run, &assignment.joints)).flatten();
         notes.extend(torque_note(assignment).into_iter().chain(dead).map(named));
+        let command = command.map_or(vec![], |r| commanded(r, &run, &revolute, units.q));
         let understood = Understood::new(files, &self.dialects[0], assignment, units, &run);
-        Ok(Logged { run, understood: Some(understood), notes })
+        Ok(Logged { run, command, understood: Some(understood), notes })
     }
 
     /// Reads the numbers of each file, which have the same times.

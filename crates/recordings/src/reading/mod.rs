@@ -8,6 +8,7 @@
 
 mod assignment;
 mod canonical;
+mod command;
 mod dialect;
 mod digits;
 mod even_times;

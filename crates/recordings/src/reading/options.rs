@@ -16,6 +16,8 @@ pub struct LoggedOptions<'a> {
     pub gains: bool,
     /// Whether a log without torques is refused.
     pub torque: bool,
+    /// Whether commanded positions are read, and no torque; a log without them is refused.
+    pub command: bool,
     /// Longest time between two samples that is accepted.
     pub gap_limit: GapLimit,
     /// Time after the first sample beyond which samples are not used, s.

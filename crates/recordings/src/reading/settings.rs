@@ -27,6 +27,9 @@ pub struct ColumnSettings {
     /// Positions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub q: Option<String>,
+    /// Commanded positions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub r: Option<String>,
     /// Velocities.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub qd: Option<String>,
@@ -56,7 +59,8 @@ pub struct ColumnSettings {
 impl ColumnSettings {
     /// Returns the names with `{}` that are given, each with the name of its setting.
     pub(super) fn patterns(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        [("q", &self.q), ("qd", &self.qd), ("tau", &self.tau), ("current", &self.current)]
+        let Self { q, r, qd, tau, current, .. } = self;
+        [("q", q), ("r", r), ("qd", qd), ("tau", tau), ("current", current)]
             .into_iter()
             .filter_map(|(key, pattern)| Some((key, pattern.as_deref()?)))
     }
@@ -75,6 +79,7 @@ impl FromStr for ColumnSettings {
             let value = value.trim();
             match key.trim() {
                 "q" => out.q = Some(value.into()),
+                "r" => out.r = Some(value.into()),
                 "qd" => out.qd = Some(value.into()),
                 "tau" => out.tau = Some(value.into()),
                 "current" => out.current = Some(value.into()),
@@ -92,8 +97,8 @@ impl FromStr for ColumnSettings {
                 "angle" => out.angle = Some(value.parse()?),
                 other => {
                     return Err(format!(
-                        "there is no key \"{other}\"; the keys are q, qd, tau, current, time, \
-                         rate, first, time_unit and angle"
+                        "there is no key \"{other}\"; the keys are q, r, qd, tau, current, \
+                         time, rate, first, time_unit and angle"
                     ));
                 }
             }

@@ -25,6 +25,9 @@ pub struct Understood {
     pub time: String,
     /// Columns of the positions.
     pub q: Vec<String>,
+    /// Columns of the commanded positions, where they were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub command: Vec<String>,
     /// Columns of the velocities; empty if they were differentiated.
     pub qd: Vec<String>,
     /// Columns of the torques; empty if there is none.
@@ -51,7 +54,7 @@ impl Understood {
         units: Units,
         run: &Run,
     ) -> Self {
-        let [q, qd, tau, temperature] = assignment
+        let [q, command, qd, tau, temperature] = assignment
             .lists()
             .map(|(_, columns)| columns.iter().map(|column| column.text.clone()).collect());
         Self {
@@ -62,6 +65,7 @@ impl Understood {
             joints: assignment.joints.clone(),
             time: assignment.time[0].name.clone(),
             q,
+            command,
             qd,
             tau,
             torque: match assignment.tau {

@@ -30,6 +30,7 @@ fn options<'a>(robot: Option<&'a [Axis]>, columns: &'a ColumnSettings) -> Logged
         columns,
         gains: false,
         torque: true,
+        command: false,
         gap_limit: GapLimit::Usual,
         until: None,
     }

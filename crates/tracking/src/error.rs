@@ -1,0 +1,90 @@
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why no model could be made of commanded and actual positions, or compared with others.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// Recordings could not be read.
+    #[error(transparent)]
+    Recordings(Box<reachtube_recordings::Error>),
+    /// A file could not be read.
+    #[error(transparent)]
+    File(#[from] reachtube_files::Error),
+    /// No path is given.
+    #[error("no recordings are given; name some with --data")]
+    NoData,
+    /// A folder has no log.
+    #[error("{}: the folder has no CSV file; give logs or folders of logs", folder.display())]
+    NoLog {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A log in a format of which commands are not read.
+    #[error(
+        "{}: commanded positions are not read from MCAP and rosbag2 yet; export the log to CSV, \
+         with a column for each commanded and each actual position", path.display()
+    )]
+    Container {
+        /// The log.
+        path: PathBuf,
+    },
+    /// The recordings are of different joints.
+    #[error(
+        "{}: it has the joints {}, but {} has {}; give recordings of one arm",
+        file.display(), joints.join(", "), other.display(), others.join(", ")
+    )]
+    Joints {
+        /// The recording.
+        file: PathBuf,
+        /// Its joints.
+        joints: Vec<String>,
+        /// The first recording.
+        other: PathBuf,
+        /// The joints of that.
+        others: Vec<String>,
+    },
+    /// A recording has too few samples.
+    #[error("{}: it has {samples} samples; a motion needs 3 at least", file.display())]
+    Short {
+        /// The recording.
+        file: PathBuf,
+        /// The number of its samples.
+        samples: usize,
+    },
+    /// Nothing moves.
+    #[error("no commanded position changes in any recording; give recordings of motions")]
+    NoMotion,
+    /// What recordings show is no measurement, or no motion that follows a command.
+    #[error("{0}")]
+    Defects(String),
+    /// The smallest sets were not found.
+    #[error("the smallest sets were not found: {0}")]
+    Program(String),
+    /// A model file is not one.
+    #[error("{}: {problem}", path.display())]
+    ModelFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
+}
+
+reachtube_files::kinds!(Error {
+    [Recordings | File] => inner,
+    NoData => Setting,
+    Program => NoAnswer,
+    ModelFile => Model,
+    _ => Recordings,
+});
+
+/// A result of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl From<reachtube_recordings::Error> for Error {
+    fn from(error: reachtube_recordings::Error) -> Self {
+        Self::Recordings(Box::new(error))
+    }
+}

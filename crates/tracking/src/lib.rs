@@ -1,0 +1,20 @@
+#![doc = include_str!("../README.md")]
+
+mod basis;
+mod check;
+mod code;
+mod error;
+mod family;
+mod fit;
+mod make;
+mod model;
+mod motion;
+mod recording;
+mod words;
+
+pub use check::{CheckedJoint, CheckedMotion, TrackingCheck};
+pub use code::Code;
+pub use error::{Error, Result};
+pub use make::{MadeModel, make};
+pub use model::{JointTracking, LeftOutMotions, TrackedRecording, TrackingModel};
+pub use recording::{Reading, Recording};

@@ -1,0 +1,223 @@
+//! The model file of an arm under its controller.
+
+use std::path::Path;
+
+use reachtube_files::{TOOL, hex, json, read_text};
+use reachtube_scalar::Interval;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use crate::basis::TERMS;
+use crate::error::{Error, Result};
+use crate::recording::Recording;
+
+/// What the field `format` of every file says.
+pub(crate) const FORMAT: &str = "reachtube-tracking-model";
+
+/// The version of the format.
+pub(crate) const VERSION: u32 = 1;
+
+/// A model of an arm under its controller: at each sample of a command r, the actual position y of
+/// each joint satisfies |y - r - c - l ṙ - a r̈| <= ρ. ṙ and r̈ are those of the parabola through the
+/// sample and its neighbours.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackingModel {
+    /// The name of the format, "reachtube-tracking-model".
+    #[schemars(extend("const" = FORMAT))]
+    pub format: String,
+    /// The version of the format.
+    #[schemars(extend("const" = VERSION))]
+    pub version: u32,
+    /// Name and version of the program that wrote the file.
+    pub tool: String,
+    /// Whether every sample was proved to lie in the sets, with directed rounding.
+    pub verified: bool,
+    /// The joints.
+    pub joints: Vec<JointTracking>,
+    /// The factor of the sets: the largest by which the smallest sets of other motions had to grow
+    /// for a motion, over all joints.
+    pub factor: f64,
+    /// The motions that decided the factor, and how it was found.
+    pub left_out: LeftOutMotions,
+    /// The recordings.
+    pub recordings: Vec<TrackedRecording>,
+    /// SHA-256 of the rest of the file's content, so that a change is noticed.
+    pub sha256: String,
+}
+
+/// What a joint does with its command.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JointTracking {
+    /// The name of the joint.
+    pub name: String,
+    /// The unit of its position: rad, or m.
+    pub unit: String,
+    /// The offset c, rad.
+    pub offset: f64,
+    /// The factor l of the commanded speed, s; a joint that comes late has a negative one.
+    pub speed: f64,
+    /// The factor a of the commanded acceleration, s².
+    pub acceleration: f64,
+    /// The half-width ρ of the set with its factor, rad.
+    pub radius: f64,
+    /// The highest commanded speed of the recordings, rad/s. The model says nothing of faster ones.
+    pub largest_speed: f64,
+    /// The highest commanded acceleration of the recordings, rad/s².
+    pub largest_acceleration: f64,
+    /// The largest recorded |y - r|, rad.
+    pub largest_error: f64,
+}
+
+/// How the motions were used that the factor comes from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LeftOutMotions {
+    /// The number of motions.
+    pub motions: usize,
+    /// The number of motions that neither fit nor choice have seen and that the factor comes from;
+    /// `None` if each motion was left out in turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibrated: Option<usize>,
+    /// The motion that needed the largest factor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub furthest: Option<String>,
+    /// The number of motions inside sets and factor that are found without them; `None` if that
+    /// was not tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub inside: Option<usize>,
+}
+
+/// A recording that a model was made of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackedRecording {
+    /// The file.
+    pub file: String,
+    /// Its SHA-256.
+    pub sha256: String,
+    /// The number of its samples.
+    pub samples: usize,
+    /// The number of samples that were set aside.
+    pub set_aside: usize,
+}
+
+impl JointTracking {
+    fn factors(&self) -> [f64; TERMS] {
+        [self.offset, self.speed, self.acceleration]
+    }
+
+    /// Returns the actual position at sample `k` of a recording minus the nominal one, enclosed.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub(crate) fn rest(&self, recording: &Recording, k: usize, joint: usize) -> Interval {
+        let at = k * recording.joint_count() + joint;
+        let position = |of: &[f64]| Interval::point(of[at]);
+        let terms = recording.terms::<Interval>(k, joint);
+        let nominal = terms
+            .into_iter()
+            .zip(self.factors())
+            .fold(position(&recording.command), |sum, (term, factor)| sum + term * factor);
+        position(&recording.actual) - nominal
+    }
+
+    /// Returns the "largest error + 20 %" that a user has without a model, rad.
+    #[must_use]
+    pub fn without_model(&self) -> f64 {
+        1.2 * self.largest_error
+    }
+}
+
+impl TrackingModel {
+    /// Returns the mean over the joints of the sets' half-widths, rad.
+    #[must_use]
+    pub fn mean_radius(&self) -> f64 {
+        mean(self.joints.iter().map(|joint| joint.radius))
+    }
+
+    /// Returns the mean over the joints of the largest error + 20 %, rad.
+    #[must_use]
+    pub fn mean_without_model(&self) -> f64 {
+        mean(self.joints.iter().map(JointTracking::without_model))
+    }
+
+    /// Returns whether the sets are proved, say something of other motions, and are narrower than
+    /// what the logs alone give.
+    #[must_use]
+    pub fn is_useful(&self) -> bool {
+        self.verified && self.has_motions() && self.mean_radius() < self.mean_without_model()
+    }
+
+    /// Returns whether there are enough motions to say something of others.
+    #[must_use]
+    pub fn has_motions(&self) -> bool {
+        self.left_out.motions >= 3
+    }
+
+    /// Reads the text of a model file. Errors name the file `origin`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::ModelFile`], which says what is wrong.
+    pub fn parse(text: &str, origin: &Path) -> Result<Self> {
+        let wrong = |problem: String| Error::ModelFile { path: origin.into(), problem };
+        let value = json::versioned(text, FORMAT, VERSION, "model").map_err(wrong)?;
+        let again = "give the file as `model --out` wrote it, or run model again";
+        let model: Self =
+            serde_json::from_value(value).map_err(|error| wrong(format!("{error}; {again}")))?;
+        let numbers = model.joints.iter().flat_map(|joint| {
+            joint.factors().into_iter().chain([joint.radius, joint.largest_speed])
+        });
+        if model.joints.is_empty() || !numbers.chain([model.factor]).all(f64::is_finite) {
+            return Err(wrong(format!(
+                "it has no joints, or numbers that are not finite; {again}"
+            )));
+        }
+        if model.sha256 != model.digest() {
+            return Err(wrong(format!("its content was changed after it was written; {again}")));
+        }
+        Ok(model)
+    }
+
+    /// Returns whether a file is a model of an arm under its controller.
+    #[must_use]
+    pub fn is_at(path: &Path) -> bool {
+        let text = read_text(path, "").unwrap_or_default();
+        let value = serde_json::from_str::<serde_json::Value>(&text).unwrap_or_default();
+        value["format"] == FORMAT
+    }
+
+    /// Opens a model file.
+    ///
+    /// # Errors
+    ///
+    /// A file that cannot be read, and [`Error::ModelFile`].
+    pub fn open(path: &Path) -> Result<Self> {
+        Self::parse(&read_text(path, "name a file that `model` wrote")?, path)
+    }
+
+    /// Returns the file's text: JSON, ending with a newline.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        json::to_lines(&self.clone().sealed())
+    }
+
+    pub(crate) fn sealed(self) -> Self {
+        let own = Self { format: FORMAT.into(), version: VERSION, tool: TOOL.into(), ..self };
+        Self { sha256: own.digest(), ..own }
+    }
+
+    fn digest(&self) -> String {
+        let unsealed = Self { sha256: String::new(), ..self.clone() };
+        hex(&Sha256::digest(serde_json::to_vec(&unsealed).expect("a model has string keys")))
+    }
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    values.sum::<f64>() / count
+}

@@ -1,0 +1,158 @@
+use std::ops::{Add, Div, Mul, Sub};
+use std::path::{Path, PathBuf};
+
+use reachtube_logs::LogFiles;
+use reachtube_recordings::{Axis, ColumnSettings, GapLimit, LoggedOptions, read_logged};
+
+use crate::basis::{TERMS, terms};
+use crate::error::{Error, Result};
+
+/// Samples of the commanded and the actual positions of n joints.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The file, or its first one.
+    pub file: PathBuf,
+    /// The names of the joints.
+    pub joints: Vec<String>,
+    /// The units of their positions: rad, or m.
+    pub units: Vec<&'static str>,
+    /// Times since the first sample, K, s, strictly increasing.
+    pub times: Vec<f64>,
+    /// Commanded positions, row-major K x n, rad.
+    pub command: Vec<f64>,
+    /// Actual positions, row-major K x n, rad.
+    pub actual: Vec<f64>,
+    /// SHA-256 of the files.
+    pub sha256: String,
+}
+
+/// How logs are read.
+#[derive(Debug, Clone, Copy)]
+pub struct Reading<'a> {
+    /// The robot's joints, if a robot is given; without one, the positions of a log are its joints.
+    pub axes: Option<&'a [Axis]>,
+    /// Columns whose names do not tell.
+    pub columns: &'a ColumnSettings,
+    /// Time after the first sample beyond which samples are not used, s.
+    pub until: Option<f64>,
+}
+
+impl Reading<'_> {
+    /// Reads the commanded and actual positions of all logs at some paths, files or folders. The
+    /// notes say how they were read.
+    ///
+    /// # Errors
+    ///
+    /// Defects of files, paths without a log, and logs of different joints.
+    pub fn read(&self, paths: &[PathBuf]) -> Result<(Vec<Recording>, Vec<String>)> {
+        let (mut recordings, mut notes) = (Vec::<Recording>::new(), Vec::new());
+        for path in paths {
+            let logs = LogFiles::find(path)?;
+            if logs.is_empty() {
+                return Err(Error::NoLog { folder: path.clone() });
+            }
+            for log in logs {
+                let (recording, own) = match log {
+                    LogFiles::Csv(files) => self.read_csv(&files)?,
+                    LogFiles::Container(path) => return Err(Error::Container { path }),
+                };
+                notes.extend(own);
+                same_joints(recordings.first(), &recording)?;
+                recordings.push(recording);
+            }
+        }
+        if recordings.is_empty() { Err(Error::NoData) } else { Ok((recordings, notes)) }
+    }
+
+    fn read_csv(&self, files: &[PathBuf]) -> Result<(Recording, Vec<String>)> {
+        let options = LoggedOptions {
+            robot: self.axes,
+            joints: &[],
+            columns: self.columns,
+            gains: false,
+            torque: false,
+            command: true,
+            gap_limit: GapLimit::Seconds(f64::INFINITY),
+            until: self.until,
+        };
+        let logged = read_logged(files, &options).map_err(reachtube_recordings::Error::Defects)?;
+        let run = logged.run;
+        let n = run.joints;
+        let of_columns = logged.understood.map(|of| of.joints).unwrap_or_default();
+        let joints = match self.axes {
+            Some(axes) => axes.iter().map(|axis| axis.name.clone()).collect(),
+            None => of_columns,
+        };
+        let recording = Recording {
+            file: files[0].clone(),
+            units: match self.axes {
+                Some(axes) => axes.iter().map(|axis| axis.units[0]).collect(),
+                None => vec!["rad"; n],
+            },
+            joints,
+            command: logged.command[..n * run.len()].to_vec(),
+            actual: (0..run.len()).flat_map(|k| run.q(k).to_vec()).collect(),
+            times: run.times,
+            sha256: run.sha256,
+        };
+        recording.check()?;
+        Ok((recording, logged.notes))
+    }
+}
+
+/// Refuses a recording of other joints than the first one's.
+fn same_joints(first: Option<&Recording>, recording: &Recording) -> Result<()> {
+    match first.filter(|first| first.joints != recording.joints) {
+        None => Ok(()),
+        Some(first) => Err(Error::Joints {
+            file: recording.file.clone(),
+            joints: recording.joints.clone(),
+            other: first.file.clone(),
+            others: first.joints.clone(),
+        }),
+    }
+}
+
+impl Recording {
+    fn check(&self) -> Result<()> {
+        match self.times.len() {
+            0..3 => Err(Error::Short { file: self.file.clone(), samples: self.times.len() }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns the number of joints n.
+    #[must_use]
+    pub fn joint_count(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Returns 1, ṙ and r̈ of the command of a joint at sample `k`, as numbers or enclosed.
+    pub(crate) fn terms<T>(&self, k: usize, joint: usize) -> [T; TERMS]
+    where
+        T: Copy + From<f64> + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
+    {
+        let n = self.joint_count();
+        let at = |k: usize| (T::from(self.times[k]), T::from(self.command[k * n + joint]));
+        terms(k, self.times.len(), at)
+    }
+
+    /// Returns the highest speed of the command over the joints at sample `k`, rad/s.
+    pub(crate) fn speed(&self, k: usize) -> f64 {
+        (0..self.joint_count())
+            .map(|joint| self.terms::<f64>(k, joint)[1].abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// Returns the actual position of a joint minus the commanded one, rad.
+    pub(crate) fn error(&self, k: usize, joint: usize) -> f64 {
+        let at = k * self.joint_count() + joint;
+        self.actual[at] - self.command[at]
+    }
+
+    /// Returns the name of the file.
+    #[must_use]
+    pub fn name(&self) -> String {
+        Path::new(&self.file).file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}

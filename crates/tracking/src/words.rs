@@ -1,0 +1,186 @@
+//! Answers on a few lines.
+
+use reachtube_finding::{Finding, Severity, Summary, Table};
+use reachtube_scalar::number::{counted, significant, two_digits_up};
+
+use crate::check::TrackingCheck;
+use crate::make::MadeModel;
+use crate::model::{JointTracking, TrackingModel};
+
+/// Number of motions that a table lists at most.
+const MOST_MOTIONS: usize = 8;
+
+/// What a model does not say.
+pub(crate) const ONLY: &str = "at samples, not between them; for commands as fast as the recorded ones; for payload, tool, \
+     contact, controller, gains and temperature as recorded; about the logged positions, not the \
+     errors of calibration or encoders";
+
+impl MadeModel {
+    /// Returns the verdict as one sentence.
+    #[must_use]
+    pub fn verdict(&self) -> String {
+        let model = &self.model;
+        let word = match (model.verified, model.is_useful()) {
+            (false, _) => "NOT PROVED conformant",
+            (true, true) => "conformant and useful",
+            (true, false) if model.has_motions() => "conformant, but vacuous",
+            (true, false) => "conformant, but it describes these recordings only",
+        };
+        let samples: usize = model.recordings.iter().map(|of| of.samples - of.set_aside).sum();
+        format!(
+            "{word}: the arm follows its command within {}, the mean of {}; {} of {}, each proved \
+             with directed rounding",
+            milli(model.mean_radius(), model.unit()),
+            counted(model.joints.len(), "joint"),
+            counted(samples, "sample"),
+            counted(model.left_out.motions, "motion"),
+        )
+    }
+
+    /// Returns the answer on a few lines: the verdict, the joints, what was left out, and what was
+    /// tried.
+    #[must_use]
+    pub fn summary(&self) -> Summary {
+        let model = &self.model;
+        let failures = self.findings.iter().filter(|of| of.severity == Severity::Failure);
+        let mut verdict = vec![self.verdict()];
+        verdict.extend(failures.map(|of| of.text.clone()));
+        let warnings = self.findings.iter().filter(|of| of.severity == Severity::Warning);
+        let mut summary = Summary {
+            verdict,
+            table: table(model),
+            warnings: warnings.map(Finding::to_string).collect(),
+            ..Summary::default()
+        };
+        summary.fact("left out", model.left_out_words());
+        let tried = self
+            .families
+            .iter()
+            .map(|of| format!("{} {}", of.depends_on, milli(of.mean_half_width, model.unit())));
+        summary.fact(
+            format!("nominal error of {}", self.family),
+            format!("mean half-width with {}", tried.collect::<Vec<_>>().join(", with ")),
+        );
+        summary.fact("new motions", model.next_motion());
+        summary.fact("holds", ONLY);
+        summary
+    }
+}
+
+impl TrackingModel {
+    /// Returns the unit that all joints share, or the first one's.
+    pub(crate) fn unit(&self) -> &str {
+        &self.joints[0].unit
+    }
+
+    /// Returns what motions that were left out need, in words.
+    fn left_out_words(&self) -> String {
+        let left_out = &self.left_out;
+        let Some(furthest) = left_out.furthest.as_ref().filter(|_| self.has_motions()) else {
+            return "nothing: that needs 3 motions at least".into();
+        };
+        let needed = format!("{furthest} needs the most, {} times the smallest sets", {
+            significant(self.factor, 3)
+        });
+        match left_out.inside {
+            _ if left_out.calibrated.is_some() => {
+                format!("every second recording; {needed}, which is the factor")
+            }
+            Some(inside) => format!(
+                "each motion in turn; {needed} of the others, which is the factor; {inside} of {} \
+                 lie inside sets and factor of the others",
+                left_out.motions
+            ),
+            None => format!("each motion in turn; {needed} of the others, which is the factor"),
+        }
+    }
+
+    /// Returns what follows for the next motion, in words.
+    #[must_use]
+    pub fn next_motion(&self) -> String {
+        let left_out = &self.left_out;
+        match left_out.calibrated {
+            Some(count) => format!(
+                "at most 1 in {} leaves the sets, on average over draws of motions that are alike",
+                count + 1
+            ),
+            None if self.has_motions() => format!(
+                "no guarantee: the factor was chosen on the same motions; about 1 in {} leaves the \
+                 sets if motions are alike",
+                left_out.motions + 1
+            ),
+            None => "no guarantee".into(),
+        }
+    }
+}
+
+/// Returns the table of the joints.
+fn table(model: &TrackingModel) -> Table {
+    let row = |joint: &JointTracking| {
+        let late = if joint.speed == 0.0 { "-".into() } else { milli(-joint.speed, "s") };
+        vec![
+            joint.name.clone(),
+            late,
+            milli(joint.radius, &joint.unit),
+            milli(joint.without_model(), &joint.unit),
+            format!("{} {}/s", significant(joint.largest_speed, 2), joint.unit),
+        ]
+    };
+    let header =
+        ["joint", "comes late by", "half-width", "largest error + 20 %", "fastest command"];
+    Table::new(header, model.joints.iter().map(row).collect())
+}
+
+impl TrackingCheck {
+    /// Returns the answer on a few lines: the verdict, and the motions that need the most.
+    #[must_use]
+    pub fn summary(&self, model: &TrackingModel) -> Summary {
+        let inside = self.motions.iter().filter(|motion| motion.needed <= 1.0).count();
+        let word = if self.conformant { "conformant" } else { "not conformant" };
+        let verdict = format!(
+            "{word}: {} of {} positions outside the sets; {inside} of {} inside",
+            self.outside,
+            self.samples,
+            counted(self.motions.len(), "motion"),
+        );
+        let mut order: Vec<usize> = (0..self.motions.len()).collect();
+        order.sort_by(|a, b| self.motions[*b].needed.total_cmp(&self.motions[*a].needed));
+        let row = |index: &usize| {
+            let motion = &self.motions[*index];
+            vec![
+                motion.name.clone(),
+                format!("{} times", two_digits_up(motion.needed)),
+                motion.joint.clone(),
+                format!("{:.3} s", motion.time),
+            ]
+        };
+        let rows = order.iter().map(row).collect();
+        let table = Table::new(["motion", "needs of its set", "joint", "at"], rows);
+        let fast = self.joints.iter().filter_map(|joint| {
+            let speed = joint.too_fast?;
+            let known = model.joints.iter().find(|of| of.name == joint.name)?;
+            Some(format!(
+                "The command of {} reaches {} {unit}/s, but the model was made of commands up to \
+                 {} {unit}/s and says nothing of faster ones; make it of recordings that are as \
+                 fast.",
+                joint.name,
+                significant(speed, 3),
+                significant(known.largest_speed, 3),
+                unit = known.unit,
+            ))
+        });
+        let mut summary = Summary {
+            verdict: vec![verdict],
+            table: table.cut_to(MOST_MOTIONS),
+            warnings: fast.collect(),
+            ..Summary::default()
+        };
+        summary.fact("of the model", model.next_motion());
+        summary
+    }
+}
+
+/// Returns a number of a unit in thousandths of it, rounded up to three digits.
+fn milli(value: f64, unit: &str) -> String {
+    format!("{} m{unit}", significant(1e3 * value, 3))
+}
