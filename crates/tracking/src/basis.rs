@@ -2,12 +2,18 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// The most terms that a nominal error has: an offset, a lag, and one of the acceleration.
-pub(crate) const TERMS: usize = 3;
+use reachtube_scalar::Interval;
 
-/// Returns 1, ṙ and r̈ of a command at sample `k` of 3 or more: of the parabola through the sample
-/// and its neighbours, or through the three samples at an end.
-pub(crate) fn terms<T>(k: usize, samples: usize, at: impl Fn(usize) -> (T, T)) -> [T; TERMS]
+/// The terms that a nominal error may have: 1, ṙ, r̈ and the direction of the command.
+pub(crate) const TERMS: usize = 4;
+
+/// A command has a direction if it is faster than this part of the joint's highest speed. Below it,
+/// the direction grows in proportion to the speed.
+const SLOW: f64 = 0.02;
+
+/// Returns ṙ and r̈ of a command at sample `k` of 3 or more: of the parabola through the sample and
+/// its neighbours. At an end, ṙ is the mean speed of the step, and r̈ that of the neighbour.
+pub(crate) fn rates<T>(k: usize, samples: usize, at: impl Fn(usize) -> (T, T)) -> [T; 2]
 where
     T: Copy + From<f64> + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
 {
@@ -20,27 +26,54 @@ where
         0 => before,
         _ => after,
     };
-    [T::from(1.0), speed, acceleration]
+    [speed, acceleration]
+}
+
+/// Returns the direction of a command: -1 to 1.
+pub(crate) fn direction(speed: f64, largest_speed: f64) -> f64 {
+    if largest_speed > 0.0 { (speed / (SLOW * largest_speed)).clamp(-1.0, 1.0) } else { 0.0 }
+}
+
+/// Encloses the direction of a command.
+///
+/// # Guarantee
+///
+/// Outer, directed rounding: the quotient is enclosed, and the limits are exact.
+pub(crate) fn enclosed_direction(speed: Interval, largest_speed: f64) -> Interval {
+    if largest_speed <= 0.0 {
+        return Interval::ZERO;
+    }
+    let quotient = speed / (Interval::point(SLOW) * largest_speed);
+    let [lo, hi] = [quotient.lo(), quotient.hi()].map(|end| end.clamp(-1.0, 1.0));
+    Interval::new(lo, hi).unwrap_or(Interval::ENTIRE)
 }
 
 #[cfg(test)]
 mod tests {
-    use reachtube_scalar::Interval;
-
-    use super::terms;
+    use super::*;
 
     #[test]
-    fn they_are_exact_for_parabolas_on_any_grid() {
+    fn rates_are_exact_for_parabolas_on_any_grid() {
         let times = [0.0, 0.1, 0.25, 0.3, 0.5];
         let r = |t: f64| 1.0 - 2.0 * t + 3.0 * t * t;
-        for (k, t) in times.into_iter().enumerate() {
-            let [one, speed, acceleration] = terms(k, 5, |k| (times[k], r(times[k])));
-            assert_eq!(one, 1.0);
-            assert!((speed - (6.0 * t - 2.0)).abs() < 1e-12, "{k}");
-            assert!((acceleration - 6.0).abs() < 1e-12, "{k}");
-            let enclosed =
-                terms(k, 5, |k| (Interval::point(times[k]), Interval::point(r(times[k]))));
-            assert!(enclosed[1].contains(speed) && enclosed[2].contains(acceleration), "{k}");
+        let slope = |a: usize, b: usize| (r(times[b]) - r(times[a])) / (times[b] - times[a]);
+        for k in 0..5 {
+            let [speed, acceleration] = rates(k, 5, |k| (times[k], r(times[k])));
+            let expected = match k {
+                0 => slope(0, 1),
+                4 => slope(3, 4),
+                k => 6.0 * times[k] - 2.0,
+            };
+            assert!((speed - expected).abs() < 1e-12 && (acceleration - 6.0).abs() < 1e-12, "{k}");
+            let point = |k: usize| (Interval::point(times[k]), Interval::point(r(times[k])));
+            let enclosed = rates(k, 5, point);
+            assert!(enclosed[0].contains(speed) && enclosed[1].contains(acceleration), "{k}");
+            let directed = enclosed_direction(enclosed[0], 5.0);
+            assert!(directed.contains(direction(speed, 5.0)) && directed.width() < 1e-12, "{k}");
         }
+        assert_eq!(
+            [direction(-1.0, 5.0), direction(0.05, 5.0), direction(1.0, 0.0)],
+            [-1.0, 0.5, 0.0]
+        );
     }
 }

@@ -43,10 +43,8 @@ pub struct CheckedMotion {
 pub struct CheckedJoint {
     /// The name of the joint.
     pub name: String,
-    /// The half-width of its set, rad.
-    pub radius: f64,
-    /// The largest distance of a sample from the nominal position, rad; an upper bound.
-    pub furthest: f64,
+    /// The largest part of its set that a sample needs; more than 1 is outside.
+    pub needed: f64,
     /// The number of samples outside.
     pub outside: usize,
     /// The highest commanded speed, rad/s, if it is beyond what the model was made of.
@@ -74,7 +72,7 @@ impl TrackingModel {
                 others: own,
             });
         }
-        // Of each motion and joint: the furthest sample, its distance, and how many are outside.
+        // Of each motion and joint: the furthest sample, what it needs, and how many are outside.
         let motions = motions(recordings);
         let of_motion = |motion: &Motion| {
             let of = &recordings[motion.recording];
@@ -82,10 +80,11 @@ impl TrackingModel {
                 let known = &self.joints[joint];
                 let mut found = (motion.rows.start, 0.0, 0);
                 for k in motion.rows.clone() {
-                    let distance = known.rest(of, k, joint).mag();
-                    found.2 += usize::from(distance.is_nan() || distance > known.radius);
-                    if distance > found.1 {
-                        (found.0, found.1) = (k, distance);
+                    let (rest, half_width) = known.beside(of, k, joint);
+                    let needed = rest.mag() / half_width;
+                    found.2 += usize::from(needed.is_nan() || rest.mag() > half_width);
+                    if needed > found.1 {
+                        (found.0, found.1) = (k, needed);
                     }
                 }
                 found
@@ -95,18 +94,17 @@ impl TrackingModel {
         let found: Vec<Vec<(usize, f64, usize)>> = motions.par_iter().map(of_motion).collect();
         let checked_motions = motions.iter().zip(&found).map(|(motion, joints)| {
             let needs = joints.iter().zip(&self.joints);
-            let needs = needs.map(|((k, distance, _), of)| (distance / of.radius, *k, of));
+            let needs = needs.map(|((k, needed, _), of)| (*needed, *k, of));
             let (needed, k, of) = needs.max_by(|a, b| a.0.total_cmp(&b.0)).expect("a joint");
             let time = recordings[motion.recording].times[k];
             CheckedMotion { name: motion.name.clone(), needed, joint: of.name.clone(), time }
         });
         let joints = self.joints.iter().enumerate().map(|(joint, of)| {
             let rows = recordings.iter().flat_map(|of| (0..of.times.len()).map(move |k| (of, k)));
-            let speed = rows.map(|(of, k)| of.terms::<f64>(k, joint)[1].abs()).fold(0.0, f64::max);
+            let speed = rows.map(|(of, k)| of.rates::<f64>(k, joint)[0].abs()).fold(0.0, f64::max);
             CheckedJoint {
                 name: of.name.clone(),
-                radius: of.radius,
-                furthest: found.iter().map(|joints| joints[joint].1).fold(0.0, f64::max),
+                needed: found.iter().map(|joints| joints[joint].1).fold(0.0, f64::max),
                 outside: found.iter().map(|joints| joints[joint].2).sum(),
                 too_fast: (speed > of.largest_speed * (1.0 + AS_FAST)).then_some(speed),
             }

@@ -9,9 +9,5 @@ reachtube_finding::codes! {
         NotFollowing = "not-following",
         /// The clocks of command and actual position slip.
         ClockSlips = "clock-slips",
-        /// The actual positions are the commanded ones of earlier samples.
-        NoMeasurement = "no-measurement",
-        /// A command is faster than all that the model was made of.
-        FasterThanRecorded = "faster-than-recorded",
     }
 }

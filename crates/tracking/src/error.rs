@@ -56,9 +56,19 @@ pub enum Error {
     /// Nothing moves.
     #[error("no commanded position changes in any recording; give recordings of motions")]
     NoMotion,
-    /// What recordings show is no measurement, or no motion that follows a command.
-    #[error("{0}")]
-    Defects(String),
+    /// The actual positions are commands of earlier samples.
+    #[error(
+        "{}: in {copied} samples, the actual positions are the commanded ones of {before} samples \
+         before, exactly: they are no measurement; log what the encoders measure", file.display()
+    )]
+    NoMeasurement {
+        /// The recording.
+        file: PathBuf,
+        /// How many samples before.
+        before: usize,
+        /// In how many samples.
+        copied: usize,
+    },
     /// The smallest sets were not found.
     #[error("the smallest sets were not found: {0}")]
     Program(String),

@@ -1,31 +1,52 @@
-//! The nominal error of a joint with the smallest radius that holds its rows: a linear program,
-//! whose rows are added where they are violated.
+//! The nominal error of a joint with the smallest set that holds its rows: a linear program, whose
+//! rows are added where they are violated.
 
 use microlp::{ComparisonOp, OptimizationDirection, Problem, Variable};
 
 use crate::basis::TERMS;
 use crate::error::{Error, Result};
 
-/// Rows are added until none is violated by more than this part of the radius.
+/// Rows are added until none is violated by more than this part of the set.
 const TOLERANCE: f64 = 1e-6;
 
-/// Largest number of rounds of added rows; each adds two rows, so that fewer suffice by far.
-const ROUNDS: usize = 200;
+/// A joint whose command spans less than this stands still, rad or m.
+const STILL: f64 = 1e-3;
 
-/// The error of one joint at some samples, and the terms that it may depend on.
+/// Largest number of rounds of added rows.
+const ROUNDS: usize = 100;
+
+/// The error of one joint at some samples, and what it may depend on.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Rows {
     /// The actual position minus the commanded one, rad.
     pub error: Vec<f64>,
-    /// 1, ṙ, r̈.
+    /// The commanded position, rad.
+    pub command: Vec<f64>,
+    /// 1, ṙ, r̈ and the direction.
     pub terms: Vec<[f64; TERMS]>,
 }
 
-/// A nominal error θ · (1, ṙ, r̈) and the largest distance of the rows from it.
+/// What a set depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Centred {
+pub(crate) struct Form {
+    /// The terms of the nominal error.
+    pub terms: &'static [usize],
+    /// Whether the half-width grows with the commanded speed.
+    pub grows: bool,
+}
+
+/// A nominal error θ · (1, ṙ, r̈, direction) and a half-width ρ0 + ρ1 |ṙ| about it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Set {
     pub factors: [f64; TERMS],
-    pub radius: f64,
+    pub radius: [f64; 2],
+}
+
+impl Set {
+    /// Returns the half-width at a commanded speed.
+    pub(crate) fn half_width(&self, speed: f64) -> f64 {
+        self.radius[0] + self.radius[1] * speed.abs()
+    }
 }
 
 impl Rows {
@@ -35,95 +56,150 @@ impl Rows {
         self.error[row] - nominal
     }
 
-    /// Returns the largest distance of some rows from a nominal error.
-    pub(crate) fn furthest(
-        &self,
-        rows: impl Iterator<Item = usize>,
-        factors: &[f64; TERMS],
-    ) -> f64 {
-        rows.map(|row| self.rest(row, factors).abs()).fold(0.0, f64::max)
+    pub(crate) fn half_width(&self, row: usize, set: &Set) -> f64 {
+        set.half_width(self.terms[row][1])
     }
 
-    /// Returns the rows with the largest and the smallest rest.
-    fn ends(&self, rows: impl Iterator<Item = usize>, factors: &[f64; TERMS]) -> [(usize, f64); 2] {
-        let mut ends = [(0, f64::NEG_INFINITY), (0, f64::INFINITY)];
+    /// Returns the mean half-width of a set over all rows.
+    pub(crate) fn mean_half_width(&self, set: &Set) -> f64 {
+        let count = self.terms.len();
+        (0..count).map(|row| self.half_width(row, set)).sum::<f64>() / count as f64
+    }
+
+    /// Returns the largest part of a set that some rows need; more than 1 is outside. A set without
+    /// width holds rows without a rest.
+    pub(crate) fn needed(&self, rows: impl Iterator<Item = usize>, set: &Set) -> f64 {
+        let of = |row: usize| match self.rest(row, &set.factors).abs() {
+            0.0 => 0.0,
+            rest => rest / self.half_width(row, set),
+        };
+        rows.map(of).fold(0.0, f64::max)
+    }
+
+    /// Returns the row that is the furthest above its set, and the one furthest below.
+    fn ends(&self, rows: impl Iterator<Item = usize>, set: &Set) -> [(usize, f64); 2] {
+        let mut ends = [(0, f64::NEG_INFINITY); 2];
         for row in rows {
-            let rest = self.rest(row, factors);
-            if rest > ends[0].1 {
-                ends[0] = (row, rest);
-            }
-            if rest < ends[1].1 {
-                ends[1] = (row, rest);
+            let (rest, width) = (self.rest(row, &set.factors), self.half_width(row, set));
+            for (end, beyond) in ends.iter_mut().zip([rest - width, -rest - width]) {
+                if beyond > end.1 {
+                    *end = (row, beyond);
+                }
             }
         }
         ends
     }
 
-    /// Returns the nominal error of the first `used` terms from which some rows are the least far.
-    /// `near` is a guess.
+    /// Returns the set of a form that holds some rows with the least mean half-width. Its half-width
+    /// at rest is at least `least`; `near` is a guess.
     ///
     /// # Errors
     ///
     /// [`Error::Program`] where the solver fails.
-    pub(crate) fn centred(
+    pub(crate) fn smallest(
         &self,
         rows: impl Iterator<Item = usize> + Clone,
-        used: usize,
-        near: &[f64; TERMS],
-    ) -> Result<Centred> {
-        // Each unknown in units in which it matters as much as the others.
-        let size = |term: usize| rows.clone().map(move |row| self.terms[row][term].abs());
-        let largest = |term: usize| size(term).fold(0.0, f64::max);
-        let units: [f64; TERMS] = std::array::from_fn(largest);
-        let scale = self.furthest(rows.clone(), near);
-        if scale == 0.0 {
-            return Ok(Centred { factors: *near, radius: 0.0 });
+        form: Form,
+        least: f64,
+        near: &Set,
+    ) -> Result<Set> {
+        let mut largest = [0.0f64; TERMS];
+        let (mut furthest, mut speed, mut count) = (least, 0.0, 0.0);
+        let mut span = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut set = Set { factors: [0.0; TERMS], radius: [least, 0.0] };
+        form.terms.iter().for_each(|term| set.factors[*term] = near.factors[*term]);
+        for row in rows.clone() {
+            let sizes = largest.iter_mut().zip(&self.terms[row]);
+            sizes.for_each(|(largest, term)| *largest = largest.max(term.abs()));
+            furthest = furthest.max(self.rest(row, &set.factors).abs());
+            (speed, count) = (speed + self.terms[row][1].abs(), count + 1.0);
+            span = [span[0].min(self.command[row]), span[1].max(self.command[row])];
         }
-        let unknown: Vec<usize> = (0..used).filter(|term| units[*term] > 0.0).collect();
-        let mut factors: [f64; TERMS] =
-            std::array::from_fn(|term| if unknown.contains(&term) { near[term] } else { 0.0 });
-        let start = factors;
-        let (mut radius, mut sides) = (0.0, Vec::new());
+        // A joint that stands still tells nothing of its lag.
+        if span[1] - span[0] < STILL {
+            largest[1..].fill(0.0);
+            set.factors[1..].fill(0.0);
+        }
+        if furthest == 0.0 {
+            return Ok(set);
+        }
+        // Each unknown in units in which it matters as much as the others.
+        let terms = form.terms.iter().copied().filter(|term| largest[*term] > 0.0);
+        let units: Vec<(usize, f64)> = terms.map(|term| (term, largest[term])).collect();
+        let mean = speed / count / largest[1];
+        let grows = form.grows && largest[1] > 0.0;
+        let mut program = Program {
+            unknowns: units.len(),
+            mean: grows.then_some(mean),
+            least: least / furthest,
+            rows: Vec::new(),
+        };
+        let start = set.factors;
         for _ in 0..ROUNDS {
-            let ends = self.ends(rows.clone(), &factors);
-            if ends.iter().all(|(_, rest)| rest.abs() <= radius * (1.0 + TOLERANCE)) {
+            let ends = self.ends(rows.clone(), &set);
+            let worst = ends.map(|(row, beyond)| beyond / self.half_width(row, &set).max(1e-300));
+            if !program.rows.is_empty() && worst.iter().all(|part| *part <= TOLERANCE) {
                 break;
             }
-            sides.extend(ends.map(|(row, _)| {
-                let terms = unknown.iter().map(|term| self.terms[row][*term] / units[*term]);
-                (terms.collect(), self.rest(row, &start) / scale)
+            program.rows.extend(ends.map(|(row, _)| ProgramRow {
+                terms: units.iter().map(|(term, unit)| self.terms[row][*term] / unit).collect(),
+                speed: self.terms[row][1].abs() / largest[1].max(f64::MIN_POSITIVE),
+                rest: self.rest(row, &start) / furthest,
             }));
-            let found = least(&sides, unknown.len())?;
-            for (term, value) in unknown.iter().zip(&found) {
-                factors[*term] = start[*term] + value * scale / units[*term];
+            let found = program.solve()?;
+            for ((term, unit), value) in units.iter().zip(&found) {
+                set.factors[*term] = start[*term] + value * furthest / unit;
             }
-            radius = found[unknown.len()] * scale;
+            set.radius[0] = found[units.len()] * furthest;
+            set.radius[1] = match grows {
+                true => found[units.len() + 1] * furthest / largest[1],
+                false => 0.0,
+            };
         }
-        Ok(Centred { factors, radius: self.furthest(rows, &factors) })
+        let grown = self.needed(rows, &set).max(1.0);
+        set.radius.iter_mut().for_each(|radius| *radius *= grown);
+        Ok(set)
     }
 }
 
-/// Returns the θ, `count` numbers, and the ρ of min ρ subject to |rest - θ · terms| <= ρ for all
-/// rows (terms, rest).
-fn least(rows: &[(Vec<f64>, f64)], count: usize) -> Result<Vec<f64>> {
-    let mut problem = Problem::new(OptimizationDirection::Minimize);
-    let free = (f64::NEG_INFINITY, f64::INFINITY);
-    let mut variables: Vec<Variable> = (0..count).map(|_| problem.add_var(0.0, free)).collect();
-    variables.push(problem.add_var(1.0, (0.0, f64::INFINITY)));
-    for (terms, rest) in rows {
-        for sign in [1.0, -1.0] {
-            let row = variables.iter().zip(terms.iter().map(|term| sign * term).chain([1.0]));
-            let row: Vec<(Variable, f64)> = row
-                .filter(|(_, factor)| *factor != 0.0)
-                .map(|(of, factor)| (*of, factor))
-                .collect();
-            problem.add_constraint(&row, ComparisonOp::Ge, sign * rest);
+/// The program min ρ0 + mean ρ1 subject to |rest - θ · terms| <= ρ0 + ρ1 speed, ρ0 >= least.
+struct Program {
+    /// The number of terms.
+    unknowns: usize,
+    /// The mean speed, if there is a ρ1.
+    mean: Option<f64>,
+    least: f64,
+    rows: Vec<ProgramRow>,
+}
+
+struct ProgramRow {
+    terms: Vec<f64>,
+    speed: f64,
+    rest: f64,
+}
+
+impl Program {
+    /// Returns θ, ρ0 and, if there is one, ρ1.
+    fn solve(&self) -> Result<Vec<f64>> {
+        let mut problem = Problem::new(OptimizationDirection::Minimize);
+        let infinity = f64::INFINITY;
+        let free = (0..self.unknowns).map(|_| problem.add_var(0.0, (-infinity, infinity)));
+        let mut variables: Vec<Variable> = free.collect();
+        variables.push(problem.add_var(1.0, (self.least, infinity)));
+        variables.extend(self.mean.map(|mean| problem.add_var(mean, (0.0, infinity))));
+        for ProgramRow { terms, speed, rest } in &self.rows {
+            for sign in [1.0, -1.0] {
+                let factors = terms.iter().map(|term| sign * term).chain([1.0, *speed]);
+                let row = variables.iter().copied().zip(factors);
+                let row: Vec<(Variable, f64)> = row.filter(|(_, factor)| *factor != 0.0).collect();
+                problem.add_constraint(&row, ComparisonOp::Ge, sign * rest);
+            }
         }
+        let failed = |error: microlp::Error| Error::Program(error.to_string());
+        let interrupted = |_| Error::Program("the solver was interrupted".into());
+        let solution = problem.solve().map_err(failed)?.into_solution().map_err(interrupted)?;
+        Ok(variables.iter().map(|of| solution.var_value(*of)).collect())
     }
-    let failed = |error: microlp::Error| Error::Program(error.to_string());
-    let interrupted = |_| Error::Program("the solver was interrupted".into());
-    let solution = problem.solve().map_err(failed)?.into_solution().map_err(interrupted)?;
-    Ok(variables.iter().map(|of| solution.var_value(*of)).collect())
 }
 
 #[cfg(test)]
@@ -134,36 +210,55 @@ mod tests {
     use super::*;
 
     fn rows(errors: &[f64], speeds: &[f64]) -> Rows {
-        let terms = speeds.iter().map(|v| [1.0, *v, v * v - 1.0]).collect();
-        Rows { error: errors.to_vec(), terms }
+        let terms = speeds.iter().map(|v| [1.0, *v, v * v - 1.0, v.signum()]).collect();
+        Rows { error: errors.to_vec(), command: speeds.to_vec(), terms }
     }
 
     #[test]
     fn the_middle_of_errors_is_their_best_offset() {
         let rows = rows(&[0.25, -0.5, 0.125, 1.0], &[1.0, 2.0, 3.0, 4.0]);
-        let Centred { factors, radius } = rows.centred(0..4, 1, &[0.0; 3]).unwrap();
-        assert!((factors[0] - 0.25).abs() < 1e-9 && factors[1..] == [0.0, 0.0], "{factors:?}");
-        assert!((radius - 0.75).abs() < 1e-9);
+        let form = Form { terms: &[0], grows: false };
+        let found = rows.smallest(0..4, form, 0.0, &Set::default()).unwrap();
+        assert!((found.factors[0] - 0.25).abs() < 1e-9, "{found:?}");
+        assert_eq!((&found.factors[1..], found.radius[1]), (&[0.0; 3][..], 0.0));
+        assert!((found.radius[0] - 0.75).abs() < 1e-9);
+        let wide = rows.smallest(0..4, form, 2.0, &Set::default()).unwrap();
+        assert_eq!(wide.radius, [2.0, 0.0]);
     }
 
+    /// No other set near the one that was found holds all rows and is smaller.
     #[test]
-    fn no_other_nominal_error_is_nearer() {
+    fn no_other_set_is_smaller() {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(5);
-        let speeds: Vec<f64> = (0..2000).map(|_| random.random_range(-1.5..1.5)).collect();
-        let error = |v: &f64| 2e-4 - 9e-3 * v + 3e-4 * (v * v - 1.0);
-        let noise = |random: &mut Xoshiro256PlusPlus| random.random_range(-1e-4..1e-4);
-        let errors: Vec<f64> = speeds.iter().map(|v| error(v) + noise(&mut random)).collect();
-        let rows = rows(&errors, &speeds);
-        let found = rows.centred(0..2000, 3, &[0.0; 3]).unwrap();
-        assert!((found.factors[1] + 9e-3).abs() < 1e-5, "{found:?}");
-        assert!(found.radius < 1e-4, "{found:?}");
-        for _ in 0..10_000 {
-            let step =
-                |size: f64, random: &mut Xoshiro256PlusPlus| random.random_range(-size..size);
-            let mut other = found.factors;
-            other.iter_mut().for_each(|factor| *factor += step(1e-6, &mut random));
-            let radius = rows.furthest(0..2000, &other);
-            assert!(radius > found.radius * (1.0 - 1e-6), "{other:?}: {radius}");
+        let mut uniform = |size: f64| random.random_range(-size..size);
+        let speeds: Vec<f64> = (0..2000).map(|_| uniform(1.5)).collect();
+        let nominal = |v: f64| 2e-4 - 9e-3 * v + 3e-4 * (v * v - 1.0) - 4e-4 * v.signum();
+        let noisy = speeds.iter().map(|v| nominal(*v) + uniform(1e-4 + 1e-3 * v.abs()));
+        let rows = rows(&noisy.collect::<Vec<f64>>(), &speeds);
+        let mean_speed = speeds.iter().map(|v| v.abs()).sum::<f64>() / 2000.0;
+        for grows in [false, true] {
+            let form = Form { terms: &[0, 1, 2, 3], grows };
+            let found = rows.smallest(0..2000, form, 0.0, &Set::default()).unwrap();
+            assert!(rows.needed(0..2000, &found) <= 1.0 + 1e-12);
+            if grows {
+                assert!((found.factors[1] + 9e-3).abs() < 1e-4, "{found:?}");
+                assert!((0.9e-3..1.01e-3).contains(&found.radius[1]), "{found:?}");
+            }
+            for _ in 0..3000 {
+                let mut other = found;
+                other.factors.iter_mut().for_each(|factor| *factor += uniform(1e-6));
+                if grows {
+                    other.radius[1] = (other.radius[1] + uniform(1e-6)).max(0.0);
+                }
+                // The least half-width at rest with which it holds all rows.
+                let beyond = |row| {
+                    let rest: f64 = rows.rest(row, &other.factors);
+                    rest.abs() - other.radius[1] * speeds[row].abs()
+                };
+                other.radius[0] = (0..2000).map(beyond).fold(0.0, f64::max);
+                let mean = |set: &Set| set.half_width(mean_speed);
+                assert!(mean(&other) > mean(&found) * (1.0 - 1e-6), "{other:?}");
+            }
         }
     }
 }

@@ -3,18 +3,21 @@
 mod basis;
 mod check;
 mod code;
+mod defects;
 mod error;
 mod family;
 mod fit;
 mod make;
 mod model;
 mod motion;
+mod noise;
 mod recording;
+mod slip;
 mod words;
 
 pub use check::{CheckedJoint, CheckedMotion, TrackingCheck};
 pub use code::Code;
 pub use error::{Error, Result};
-pub use make::{MadeModel, make};
+pub use make::{MadeModel, TriedFamily, make};
 pub use model::{JointTracking, LeftOutMotions, TrackedRecording, TrackingModel};
 pub use recording::{Reading, Recording};

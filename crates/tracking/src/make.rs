@@ -1,24 +1,30 @@
 use rayon::prelude::*;
 use reachtube_finding::{Finding, Severity};
+use reachtube_scalar::rounding::{add_up, sub_up};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::code::Code;
 use crate::error::{Error, Result};
 use crate::family::{Evidence, FAMILIES, Tried};
+use crate::fit::Set;
 use crate::model::{JointTracking, LeftOutMotions, TrackedRecording, TrackingModel};
 use crate::motion::{Motion, motions};
 use crate::recording::Recording;
+use crate::slip::slips;
+
+/// Fewest samples of a recording that are used.
+const FEWEST_ROWS: usize = 3;
 
 /// A model of an arm under its controller, and the families that were tried for it.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MadeModel {
     /// The model.
     pub model: TrackingModel,
-    /// What the nominal error of the model depends on, in words.
-    pub family: &'static str,
     /// What was tried, the simplest first.
     pub families: Vec<TriedFamily>,
+    /// The place of the family of the model among them, from 0.
+    pub chosen: usize,
     /// What speaks against the model.
     pub findings: Vec<Finding>,
 }
@@ -28,10 +34,22 @@ pub struct MadeModel {
 pub struct TriedFamily {
     /// What the nominal error depends on, in words.
     pub depends_on: &'static str,
-    /// The mean over the joints of the half-widths with the factor, rad.
+    /// Whether the sets grow with the commanded speed.
+    pub grows: bool,
+    /// The mean over samples and joints of the half-widths with the factor, rad.
     pub mean_half_width: f64,
     /// The factor of all sets.
     pub factor: f64,
+}
+
+impl MadeModel {
+    /// Returns whether the sets are proved, say something of other motions, are narrower than what
+    /// the logs alone give, and nothing contradicts them.
+    #[must_use]
+    pub fn is_useful(&self) -> bool {
+        let is_contradicted = self.findings.iter().any(|of| of.severity == Severity::Failure);
+        self.model.is_useful() && !is_contradicted
+    }
 }
 
 /// Makes a model of commanded and actual positions of one arm.
@@ -43,23 +61,59 @@ pub struct TriedFamily {
 ///
 /// # Errors
 ///
-/// Recordings without a motion, and a program that cannot be solved.
+/// Actual positions that are no measurement, recordings without a motion, and a program that cannot
+/// be solved.
 ///
 /// # Panics
 ///
 /// Panics without a recording.
 pub fn make(recordings: &[Recording]) -> Result<MadeModel> {
-    if recordings.iter().all(|of| (0..of.times.len()).all(|k| of.speed(k) == 0.0)) {
+    recordings.iter().try_for_each(Recording::refuse_copy)?;
+    let (ranges, found): (Vec<_>, Vec<_>) = recordings.iter().map(Recording::following).unzip();
+    let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
+    let parts = recordings.iter().zip(&ranges).filter(|(_, range)| range.len() >= FEWEST_ROWS);
+    let used: Vec<Recording> = parts.map(|(of, range)| of.only(range.clone())).collect();
+    if used.iter().all(|of| (0..of.times.len()).all(|k| of.speed(k) == 0.0)) {
         return Err(Error::NoMotion);
     }
-    let motions = motions(recordings);
-    let evidence = Evidence::new(recordings, &motions);
+    let motions = motions(&used);
+    let evidence = Evidence::new(&used, &motions);
     let (tried, at) = evidence.choose()?;
     let chosen = &tried[at];
-    let inside = evidence.inside(chosen)?;
-    let joints = (0..recordings[0].joint_count()).map(|joint| {
-        let of_joint = chosen.joints[joint];
-        let [offset, speed, acceleration] = of_joint.factors;
+    let recorded = recordings.iter().zip(&ranges).map(|(of, range)| TrackedRecording {
+        file: of.file.display().to_string(),
+        sha256: of.sha256.clone(),
+        samples: of.times.len(),
+        set_aside: of.times.len() - range.len(),
+    });
+    let mut model = TrackingModel {
+        format: String::new(),
+        version: 0,
+        tool: String::new(),
+        verified: false,
+        joints: joints(&used, chosen),
+        factor: chosen.factor,
+        left_out: left_out(&motions, &evidence, chosen, evidence.inside(chosen)?),
+        recordings: recorded.collect(),
+        sha256: String::new(),
+    };
+    hold_all(&mut model, &used);
+    let model = model.sealed();
+    findings.extend(used.iter().filter_map(slips));
+    findings.extend(against(&model));
+    let family = |of: &Tried| TriedFamily {
+        depends_on: FAMILIES[of.family].words,
+        grows: FAMILIES[of.family].form.grows,
+        mean_half_width: of.mean_half_width,
+        factor: of.factor,
+    };
+    Ok(MadeModel { model, families: tried.iter().map(family).collect(), chosen: at, findings })
+}
+
+/// Returns the joints with their sets, scaled by the factor, and what the recordings show of them.
+fn joints(recordings: &[Recording], chosen: &Tried) -> Vec<JointTracking> {
+    let of_joint = |(joint, set): (usize, &Set)| {
+        let Set { factors: [offset, speed, acceleration, direction], radius } = *set;
         let largest = |value: &dyn Fn(&Recording, usize) -> f64| {
             let rows = recordings.iter().flat_map(|of| (0..of.times.len()).map(move |k| (of, k)));
             rows.map(|(of, k)| value(of, k).abs()).fold(0.0, f64::max)
@@ -70,41 +124,15 @@ pub fn make(recordings: &[Recording]) -> Result<MadeModel> {
             offset,
             speed,
             acceleration,
-            radius: of_joint.radius * chosen.factor,
-            largest_speed: largest(&|of, k| of.terms::<f64>(k, joint)[1]),
-            largest_acceleration: largest(&|of, k| of.terms::<f64>(k, joint)[2]),
+            direction,
+            radius: radius[0] * chosen.factor,
+            radius_per_speed: radius[1] * chosen.factor,
+            largest_speed: largest(&|of, k| of.rates::<f64>(k, joint)[0]),
+            largest_acceleration: largest(&|of, k| of.rates::<f64>(k, joint)[1]),
             largest_error: largest(&|of, k| of.error(k, joint)),
         }
-    });
-    let mut model = TrackingModel {
-        format: String::new(),
-        version: 0,
-        tool: String::new(),
-        verified: false,
-        joints: joints.collect(),
-        factor: chosen.factor,
-        left_out: left_out(&motions, &evidence, chosen, inside),
-        recordings: recordings
-            .iter()
-            .map(|of| TrackedRecording {
-                file: of.file.display().to_string(),
-                sha256: of.sha256.clone(),
-                samples: of.times.len(),
-                set_aside: 0,
-            })
-            .collect(),
-        sha256: String::new(),
     };
-    hold_all(&mut model, recordings);
-    let family = |of: &Tried| TriedFamily {
-        depends_on: FAMILIES[of.family].1,
-        mean_half_width: of.mean_width(),
-        factor: of.factor,
-    };
-    let families = tried.iter().map(family).collect();
-    let (model, family) = (model.sealed(), FAMILIES[chosen.family].1);
-    let findings = findings(&model);
-    Ok(MadeModel { model, family, families, findings })
+    chosen.sets.iter().enumerate().map(of_joint).collect()
 }
 
 /// Returns what the motions said that were left out.
@@ -112,7 +140,7 @@ fn left_out(
     motions: &[Motion],
     evidence: &Evidence,
     chosen: &Tried,
-    inside: Option<(usize, usize)>,
+    inside: Option<usize>,
 ) -> LeftOutMotions {
     let kept = evidence.is_kept.iter().filter(|is_kept| **is_kept).count();
     let seen = motions.iter().zip(&evidence.is_kept);
@@ -122,34 +150,52 @@ fn left_out(
         motions: motions.len(),
         calibrated: (kept > 0).then_some(kept),
         furthest: furthest.map(|((motion, _), _)| motion.name.clone()),
-        inside: inside.map(|(inside, _)| inside),
+        inside,
     }
 }
 
-/// Raises each radius to what a proof of every sample needs, by rounding at most where the program
-/// was solved, and states that they are proved.
+/// Raises each half-width at rest to what a proof of every sample needs, by rounding at most where
+/// the program was solved, and states that they are proved.
 fn hold_all(model: &mut TrackingModel, recordings: &[Recording]) {
     for joint in 0..model.joints.len() {
-        let of_joint = &model.joints[joint];
-        let furthest = |of: &Recording| {
-            let rests = (0..of.times.len()).map(|k| of_joint.rest(of, k, joint).mag());
-            rests.fold(0.0, f64::max)
+        let beyond = |of_joint: &JointTracking| {
+            let of = |of: &Recording| {
+                let rows = (0..of.times.len()).map(|k| {
+                    let (rest, half_width) = of_joint.beside(of, k, joint);
+                    sub_up(rest.mag(), half_width)
+                });
+                rows.fold(f64::NEG_INFINITY, f64::max)
+            };
+            recordings.par_iter().map(of).reduce(|| f64::NEG_INFINITY, f64::max)
         };
-        let needed = recordings.par_iter().map(furthest).reduce(|| 0.0, f64::max);
-        model.joints[joint].radius = of_joint.radius.max(needed);
+        let own = beyond(&model.joints[joint]);
+        let of_joint = &mut model.joints[joint];
+        of_joint.radius = add_up(of_joint.radius, own.max(0.0));
+        // The sum may round by more than the first one did.
+        if own > 0.0 {
+            of_joint.radius *= 1.0 + 1e-12;
+        }
     }
-    // The radius is at least the upper end of every enclosed distance.
-    model.verified = model.joints.iter().all(|joint| joint.radius.is_finite());
+    let holds = |(joint, of_joint): (usize, &JointTracking)| {
+        let of = |of: &Recording| {
+            (0..of.times.len()).all(|k| {
+                let (rest, half_width) = of_joint.beside(of, k, joint);
+                rest.mag() <= half_width
+            })
+        };
+        recordings.par_iter().all(of)
+    };
+    model.verified = model.joints.iter().enumerate().all(holds);
 }
 
 /// Returns what speaks against a model.
-fn findings(model: &TrackingModel) -> Vec<Finding> {
+fn against(model: &TrackingModel) -> Vec<Finding> {
     let mut found = Vec::new();
     if !model.has_motions() {
         let text = "With fewer than 3 motions nothing is known of others; record more of them, with \
                     a rest between them.";
         found.push(Finding::new(Severity::Warning, Code::FewMotions, text));
-    } else if model.mean_radius() >= model.mean_without_model() {
+    } else if model.mean_half_width() >= model.mean_without_model() {
         let text = "The sets are not narrower than the largest recorded error + 20 %, which needs no \
                     model; record more motions that are alike.";
         found.push(Finding::new(Severity::Warning, Code::NotNarrower, text));

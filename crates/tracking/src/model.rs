@@ -4,11 +4,12 @@ use std::path::Path;
 
 use reachtube_files::{TOOL, hex, json, read_text};
 use reachtube_scalar::Interval;
+use reachtube_scalar::rounding::{add_down, mul_down};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::basis::TERMS;
+use crate::basis::{TERMS, enclosed_direction};
 use crate::error::{Error, Result};
 use crate::recording::Recording;
 
@@ -19,8 +20,8 @@ pub(crate) const FORMAT: &str = "reachtube-tracking-model";
 pub(crate) const VERSION: u32 = 1;
 
 /// A model of an arm under its controller: at each sample of a command r, the actual position y of
-/// each joint satisfies |y - r - c - l ṙ - a r̈| <= ρ. ṙ and r̈ are those of the parabola through the
-/// sample and its neighbours.
+/// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. ṙ and r̈ are those of the
+/// parabola through the sample and its neighbours; d is the direction of the command, from -1 to 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackingModel {
@@ -61,8 +62,12 @@ pub struct JointTracking {
     pub speed: f64,
     /// The factor a of the commanded acceleration, s².
     pub acceleration: f64,
-    /// The half-width ρ of the set with its factor, rad.
+    /// The factor s of the direction of the command, rad: what friction takes.
+    pub direction: f64,
+    /// The half-width ρ0 of the set at rest with its factor, rad.
     pub radius: f64,
+    /// By how much it grows with the commanded speed, ρ1 with its factor, s.
+    pub radius_per_speed: f64,
     /// The highest commanded speed of the recordings, rad/s. The model says nothing of faster ones.
     pub largest_speed: f64,
     /// The highest commanded acceleration of the recordings, rad/s².
@@ -106,23 +111,33 @@ pub struct TrackedRecording {
 
 impl JointTracking {
     fn factors(&self) -> [f64; TERMS] {
-        [self.offset, self.speed, self.acceleration]
+        [self.offset, self.speed, self.acceleration, self.direction]
     }
 
-    /// Returns the actual position at sample `k` of a recording minus the nominal one, enclosed.
+    /// Returns the actual position at sample `k` of a recording minus the nominal one, and the
+    /// half-width of the set there.
     ///
     /// # Guarantee
     ///
-    /// Outer, directed rounding.
-    pub(crate) fn rest(&self, recording: &Recording, k: usize, joint: usize) -> Interval {
+    /// The position is enclosed, and the half-width a lower bound; directed rounding.
+    pub(crate) fn beside(&self, recording: &Recording, k: usize, joint: usize) -> (Interval, f64) {
         let at = k * recording.joint_count() + joint;
         let position = |of: &[f64]| Interval::point(of[at]);
-        let terms = recording.terms::<Interval>(k, joint);
-        let nominal = terms
-            .into_iter()
-            .zip(self.factors())
-            .fold(position(&recording.command), |sum, (term, factor)| sum + term * factor);
-        position(&recording.actual) - nominal
+        let [speed, acceleration] = recording.rates::<Interval>(k, joint);
+        let direction = enclosed_direction(speed, self.largest_speed);
+        let terms = [Interval::ONE, speed, acceleration, direction];
+        let pairs = terms.into_iter().zip(self.factors());
+        let pairs = pairs.filter(|(_, factor)| *factor != 0.0);
+        let nominal =
+            pairs.fold(position(&recording.command), |sum, (term, factor)| sum + term * factor);
+        let growth = mul_down(self.radius_per_speed, speed.mig());
+        (position(&recording.actual) - nominal, add_down(self.radius, growth))
+    }
+
+    /// Returns the half-width of the set at a commanded speed \[rad/s\], rad.
+    #[must_use]
+    pub fn half_width(&self, speed: f64) -> f64 {
+        self.radius + self.radius_per_speed * speed.abs()
     }
 
     /// Returns the "largest error + 20 %" that a user has without a model, rad.
@@ -133,10 +148,10 @@ impl JointTracking {
 }
 
 impl TrackingModel {
-    /// Returns the mean over the joints of the sets' half-widths, rad.
+    /// Returns the mean over the joints of the half-widths at their highest speeds, rad.
     #[must_use]
-    pub fn mean_radius(&self) -> f64 {
-        mean(self.joints.iter().map(|joint| joint.radius))
+    pub fn mean_half_width(&self) -> f64 {
+        mean(self.joints.iter().map(|joint| joint.half_width(joint.largest_speed)))
     }
 
     /// Returns the mean over the joints of the largest error + 20 %, rad.
@@ -149,7 +164,7 @@ impl TrackingModel {
     /// what the logs alone give.
     #[must_use]
     pub fn is_useful(&self) -> bool {
-        self.verified && self.has_motions() && self.mean_radius() < self.mean_without_model()
+        self.verified && self.has_motions() && self.mean_half_width() < self.mean_without_model()
     }
 
     /// Returns whether there are enough motions to say something of others.
@@ -170,7 +185,8 @@ impl TrackingModel {
         let model: Self =
             serde_json::from_value(value).map_err(|error| wrong(format!("{error}; {again}")))?;
         let numbers = model.joints.iter().flat_map(|joint| {
-            joint.factors().into_iter().chain([joint.radius, joint.largest_speed])
+            let sizes = [joint.radius, joint.radius_per_speed, joint.largest_speed];
+            joint.factors().into_iter().chain(sizes)
         });
         if model.joints.is_empty() || !numbers.chain([model.factor]).all(f64::is_finite) {
             return Err(wrong(format!(

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use reachtube_logs::LogFiles;
 use reachtube_recordings::{Axis, ColumnSettings, GapLimit, LoggedOptions, read_logged};
 
-use crate::basis::{TERMS, terms};
+use crate::basis::rates;
 use crate::error::{Error, Result};
 
 /// Samples of the commanded and the actual positions of n joints.
@@ -127,20 +127,20 @@ impl Recording {
         self.joints.len()
     }
 
-    /// Returns 1, ṙ and r̈ of the command of a joint at sample `k`, as numbers or enclosed.
-    pub(crate) fn terms<T>(&self, k: usize, joint: usize) -> [T; TERMS]
+    /// Returns ṙ and r̈ of the command of a joint at sample `k`, as numbers or enclosed.
+    pub(crate) fn rates<T>(&self, k: usize, joint: usize) -> [T; 2]
     where
         T: Copy + From<f64> + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
     {
         let n = self.joint_count();
         let at = |k: usize| (T::from(self.times[k]), T::from(self.command[k * n + joint]));
-        terms(k, self.times.len(), at)
+        rates(k, self.times.len(), at)
     }
 
     /// Returns the highest speed of the command over the joints at sample `k`, rad/s.
     pub(crate) fn speed(&self, k: usize) -> f64 {
         (0..self.joint_count())
-            .map(|joint| self.terms::<f64>(k, joint)[1].abs())
+            .map(|joint| self.rates::<f64>(k, joint)[0].abs())
             .fold(0.0, f64::max)
     }
 

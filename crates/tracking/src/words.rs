@@ -4,25 +4,25 @@ use reachtube_finding::{Finding, Severity, Summary, Table};
 use reachtube_scalar::number::{counted, significant, two_digits_up};
 
 use crate::check::TrackingCheck;
-use crate::make::MadeModel;
+use crate::make::{MadeModel, TriedFamily};
 use crate::model::{JointTracking, TrackingModel};
 
 /// Number of motions that a table lists at most.
 const MOST_MOTIONS: usize = 8;
 
-/// What a model does not say.
-pub(crate) const ONLY: &str = "at samples, not between them; for commands as fast as the recorded ones; for payload, tool, \
-     contact, controller, gains and temperature as recorded; about the logged positions, not the \
-     errors of calibration or encoders";
+/// What a model is about.
+const HOLDS: &str = "at samples, for commands as fast as the recorded ones, and payload, tool, \
+                     contact, gains and temperature as recorded";
 
 impl MadeModel {
     /// Returns the verdict as one sentence.
     #[must_use]
     pub fn verdict(&self) -> String {
         let model = &self.model;
-        let word = match (model.verified, model.is_useful()) {
+        let word = match (model.verified, self.is_useful()) {
             (false, _) => "NOT PROVED conformant",
             (true, true) => "conformant and useful",
+            (true, false) if model.is_useful() => "conformant, but the recordings contradict it",
             (true, false) if model.has_motions() => "conformant, but vacuous",
             (true, false) => "conformant, but it describes these recordings only",
         };
@@ -30,7 +30,7 @@ impl MadeModel {
         format!(
             "{word}: the arm follows its command within {}, the mean of {}; {} of {}, each proved \
              with directed rounding",
-            milli(model.mean_radius(), model.unit()),
+            milli(model.mean_half_width(), model.unit()),
             counted(model.joints.len(), "joint"),
             counted(samples, "sample"),
             counted(model.left_out.motions, "motion"),
@@ -53,16 +53,17 @@ impl MadeModel {
             ..Summary::default()
         };
         summary.fact("left out", model.left_out_words());
-        let tried = self
-            .families
-            .iter()
-            .map(|of| format!("{} {}", of.depends_on, milli(of.mean_half_width, model.unit())));
-        summary.fact(
-            format!("nominal error of {}", self.family),
-            format!("mean half-width with {}", tried.collect::<Vec<_>>().join(", with ")),
-        );
+        let width = |of: &TriedFamily| {
+            let grows = if of.grows { ", growing with the speed" } else { "" };
+            format!("{}{grows} {}", of.depends_on, milli(of.mean_half_width, model.unit()))
+        };
+        let chosen = &self.families[self.chosen];
+        let others = self.families.iter().filter(|of| *of != chosen);
+        let next = others.min_by(|a, b| a.mean_half_width.total_cmp(&b.mean_half_width));
+        let tried: Vec<String> = std::iter::once(chosen).chain(next).map(width).collect();
+        summary.fact("mean half-width with", tried.join("; with "));
         summary.fact("new motions", model.next_motion());
-        summary.fact("holds", ONLY);
+        summary.fact("holds", HOLDS);
         summary
     }
 }
@@ -79,19 +80,16 @@ impl TrackingModel {
         let Some(furthest) = left_out.furthest.as_ref().filter(|_| self.has_motions()) else {
             return "nothing: that needs 3 motions at least".into();
         };
-        let needed = format!("{furthest} needs the most, {} times the smallest sets", {
-            significant(self.factor, 3)
-        });
+        let factor = significant(self.factor, 3);
+        let needed = format!("{furthest} needs the most, {factor} times the smallest sets");
         match left_out.inside {
-            _ if left_out.calibrated.is_some() => {
-                format!("every second recording; {needed}, which is the factor")
-            }
+            _ if left_out.calibrated.is_some() => format!("every second recording; {needed}"),
             Some(inside) => format!(
-                "each motion in turn; {needed} of the others, which is the factor; {inside} of {} \
-                 lie inside sets and factor of the others",
+                "in turn; {needed} of the others; {inside} of {} lie inside sets and factor of the \
+                 others",
                 left_out.motions
             ),
-            None => format!("each motion in turn; {needed} of the others, which is the factor"),
+            None => format!("in turn; {needed} of the others"),
         }
     }
 
@@ -105,8 +103,7 @@ impl TrackingModel {
                 count + 1
             ),
             None if self.has_motions() => format!(
-                "no guarantee: the factor was chosen on the same motions; about 1 in {} leaves the \
-                 sets if motions are alike",
+                "no guarantee; if motions are alike, about 1 in {} leaves the sets",
                 left_out.motions + 1
             ),
             None => "no guarantee".into(),
@@ -121,13 +118,20 @@ fn table(model: &TrackingModel) -> Table {
         vec![
             joint.name.clone(),
             late,
-            milli(joint.radius, &joint.unit),
-            milli(joint.without_model(), &joint.unit),
+            milli(joint.half_width(0.0), &joint.unit),
+            milli(joint.half_width(joint.largest_speed), &joint.unit),
             format!("{} {}/s", significant(joint.largest_speed, 2), joint.unit),
+            milli(joint.without_model(), &joint.unit),
         ]
     };
-    let header =
-        ["joint", "comes late by", "half-width", "largest error + 20 %", "fastest command"];
+    let header = [
+        "joint",
+        "late by",
+        "half-width at rest",
+        "at full speed",
+        "full speed",
+        "largest error + 20 %",
+    ];
     Table::new(header, model.joints.iter().map(row).collect())
 }
 

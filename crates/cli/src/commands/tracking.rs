@@ -21,7 +21,7 @@ use crate::progress::Progress;
 pub(crate) struct TrackingOutput<'a> {
     /// Whether the sets are proved, and narrower than what the logs alone give.
     useful: bool,
-    /// The mean over the joints of the half-widths of their sets, rad.
+    /// The mean over the joints of the half-widths of their sets at their highest speeds, rad.
     mean_half_width: f64,
     /// The mean over the joints of their largest error + 20 %, rad.
     mean_largest_error: f64,
@@ -51,7 +51,7 @@ pub(crate) fn model(args: &model::Arguments, json: bool) -> Result<Outcome> {
     let made = make(&recordings)?;
     drop(bar);
     write::atomically(&path, |out| out.write_all(made.model.to_json().as_bytes()))?;
-    let outcome = match (made.model.verified, made.model.is_useful()) {
+    let outcome = match (made.model.verified, made.is_useful()) {
         (false, _) => Outcome::NotConformant,
         (true, true) => Outcome::Done,
         (true, false) => Outcome::Vacuous,
@@ -59,8 +59,8 @@ pub(crate) fn model(args: &model::Arguments, json: bool) -> Result<Outcome> {
     if json {
         output::wrote(&path);
         output::print_json(&TrackingOutput {
-            useful: made.model.is_useful(),
-            mean_half_width: made.model.mean_radius(),
+            useful: made.is_useful(),
+            mean_half_width: made.model.mean_half_width(),
             mean_largest_error: made.model.mean_without_model(),
             made: &made,
         })?;
