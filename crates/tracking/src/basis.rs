@@ -12,7 +12,7 @@ pub(crate) const TERMS: usize = 4;
 const SLOW: f64 = 0.02;
 
 /// Returns ṙ and r̈ of a command at sample `k` of 3 or more: of the parabola through the sample and
-/// its neighbours. At an end, ṙ is the mean speed of the step, and r̈ that of the neighbour.
+/// its neighbours. At an end, ṙ is the mean speed of the step, and r̈ is the neighbour's.
 pub(crate) fn rates<T>(k: usize, samples: usize, at: impl Fn(usize) -> (T, T)) -> [T; 2]
 where
     T: Copy + From<f64> + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::model::TrackingModel;
-use crate::motion::{Motion, motions};
-use crate::recording::Recording;
+use crate::motion::{MotionRows, motions};
+use crate::recording::TrackedRun;
 
 /// Beyond the recorded speed by no more than this part, a command counts as one like the recorded.
 const AS_FAST: f64 = 1e-9;
@@ -62,7 +62,7 @@ impl TrackingModel {
     /// # Errors
     ///
     /// [`Error::Joints`] for recordings of other joints than the model's.
-    pub fn check(&self, recordings: &[Recording]) -> Result<TrackingCheck> {
+    pub fn check(&self, recordings: &[TrackedRun]) -> Result<TrackingCheck> {
         let own: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
         if let Some(other) = recordings.iter().find(|of| of.joints != own) {
             return Err(Error::Joints {
@@ -72,9 +72,9 @@ impl TrackingModel {
                 others: own,
             });
         }
-        // Of each motion and joint: the furthest sample, what it needs, and how many are outside.
+        // For each motion and joint: the furthest sample, what it needs, and how many are outside.
         let motions = motions(recordings);
-        let of_motion = |motion: &Motion| {
+        let of_motion = |motion: &MotionRows| {
             let of = &recordings[motion.recording];
             let joint = |joint: usize| {
                 let known = &self.joints[joint];

@@ -7,12 +7,12 @@ use reachtube_scalar::number::{counted, significant};
 
 use crate::code::Code;
 use crate::error::{Error, Result};
-use crate::recording::Recording;
+use crate::recording::TrackedRun;
 
 /// Actual positions that are commands of at most this many samples before are no measurement.
 const MOST_BEFORE: usize = 10;
 
-/// They are, if so many of the samples in which the command changes are.
+/// Positions count as copied if this share of the samples with a new command is.
 const COPIED: f64 = 0.99;
 
 /// An arm is off its command at first if its error is this many times the one that 90 % of the
@@ -28,7 +28,7 @@ const GOES_ON: f64 = 0.1;
 /// An arm that stands for so long while its command goes on does not follow it, s.
 const STOPPED: f64 = 0.3;
 
-impl Recording {
+impl TrackedRun {
     /// Refuses actual positions that are no measurement: the commands of earlier samples.
     pub(crate) fn refuse_copy(&self) -> Result<()> {
         let (n, samples) = (self.joint_count(), self.times.len());

@@ -6,14 +6,14 @@ use rayon::prelude::*;
 
 use crate::basis::direction;
 use crate::error::Result;
-use crate::fit::{Form, Rows, Set};
-use crate::motion::Motion;
+use crate::fit::{JointErrors, SetForm, TrackedSet};
+use crate::motion::MotionRows;
 use crate::noise::at_rest;
-use crate::recording::Recording;
+use crate::recording::TrackedRun;
 
 /// A family of sets: their form, and words for the nominal error.
 pub(crate) struct Family {
-    pub form: Form,
+    pub form: SetForm,
     pub words: &'static str,
 }
 
@@ -39,13 +39,13 @@ pub(crate) const FOR_SPLIT: usize = 20;
 const MOST_NESTED: usize = 24;
 
 const fn family(terms: &'static [usize], grows: bool, words: &'static str) -> Family {
-    Family { form: Form { terms, grows }, words }
+    Family { form: SetForm { terms, grows }, words }
 }
 
 /// The rows of all joints, and the motions that they belong to.
-pub(crate) struct Evidence {
+pub(crate) struct TrackedRows {
     /// Joint by joint, the rows of all recordings one after the other.
-    joints: Vec<Rows>,
+    joints: Vec<JointErrors>,
     /// The least half-width of each joint's set at rest: its noise there.
     least: Vec<f64>,
     /// The rows of each motion.
@@ -56,11 +56,11 @@ pub(crate) struct Evidence {
 
 /// A family with its sets.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Tried {
+pub(crate) struct FittedFamily {
     /// Its place among the families.
     pub family: usize,
     /// The smallest sets of the motions that fit them, joint by joint.
-    pub sets: Vec<Set>,
+    pub sets: Vec<TrackedSet>,
     /// For each motion: the factor by which the sets of the others have to grow to hold it.
     pub needed: Vec<f64>,
     /// The factor of all sets: the largest that a motion needed, at least 1.
@@ -69,8 +69,8 @@ pub(crate) struct Tried {
     pub mean_half_width: f64,
 }
 
-impl Evidence {
-    pub(crate) fn new(recordings: &[Recording], motions: &[Motion]) -> Self {
+impl TrackedRows {
+    pub(crate) fn new(recordings: &[TrackedRun], motions: &[MotionRows]) -> Self {
         let n = recordings[0].joint_count();
         let of_joint = |joint: usize| {
             let rows =
@@ -80,7 +80,7 @@ impl Evidence {
             let terms = |[speed, acceleration]: &[f64; 2]| {
                 [1.0, *speed, *acceleration, direction(*speed, largest)]
             };
-            Rows {
+            JointErrors {
                 error: rows().map(|(of, k)| of.error(k, joint)).collect(),
                 command: rows().map(|(of, k)| of.command[k * n + joint]).collect(),
                 terms: rates.iter().map(terms).collect(),
@@ -93,7 +93,7 @@ impl Evidence {
                 Some(*sum - size)
             })
             .collect();
-        let shifted = |motion: &Motion| {
+        let shifted = |motion: &MotionRows| {
             let first = firsts[motion.recording];
             first + motion.rows.start..first + motion.rows.end
         };
@@ -116,9 +116,14 @@ impl Evidence {
     }
 
     /// Returns the smallest sets of some motions, joint by joint.
-    fn sets(&self, motions: &[usize], form: Form, near: &[Set]) -> Result<Vec<Set>> {
+    fn sets(
+        &self,
+        motions: &[usize],
+        form: SetForm,
+        near: &[TrackedSet],
+    ) -> Result<Vec<TrackedSet>> {
         let rows = motions.iter().flat_map(|motion| self.motions[*motion].clone());
-        let of = |(joint, of_joint): (usize, &Rows)| {
+        let of = |(joint, of_joint): (usize, &JointErrors)| {
             let near = near.get(joint).copied().unwrap_or_default();
             of_joint.smallest(rows.clone(), form, self.least[joint], &near)
         };
@@ -126,14 +131,15 @@ impl Evidence {
     }
 
     /// Returns the factor by which sets have to grow to hold a motion.
-    fn needed(&self, sets: &[Set], motion: usize) -> f64 {
+    fn needed(&self, sets: &[TrackedSet], motion: usize) -> f64 {
         let pairs = self.joints.iter().zip(sets);
-        let of = |(own, set): (&Rows, &Set)| own.needed(self.motions[motion].clone(), set);
+        let of =
+            |(own, set): (&JointErrors, &TrackedSet)| own.needed(self.motions[motion].clone(), set);
         pairs.map(of).fold(0.0, f64::max)
     }
 
     /// Returns what each of some motions needs of the sets of the others among them.
-    fn left_out(&self, motions: &[usize], form: Form, near: &[Set]) -> Result<Vec<f64>> {
+    fn left_out(&self, motions: &[usize], form: SetForm, near: &[TrackedSet]) -> Result<Vec<f64>> {
         let without = |out: &usize| {
             let others: Vec<usize> = motions.iter().copied().filter(|of| of != out).collect();
             Ok(self.needed(&self.sets(&others, form, near)?, *out))
@@ -142,7 +148,7 @@ impl Evidence {
     }
 
     /// Tries a family on motions that are left out in turn, or on the motions that are kept.
-    fn tried(&self, family: usize) -> Result<Tried> {
+    fn tried(&self, family: usize) -> Result<FittedFamily> {
         let form = FAMILIES[family].form;
         let fitted = self.fitted();
         let sets = self.sets(&fitted, form, &[])?;
@@ -153,26 +159,26 @@ impl Evidence {
             (false, _) => self.left_out(&fitted, form, &sets)?,
         };
         let factor = needed.iter().copied().fold(1.0, f64::max);
-        let mean = |(rows, set): (&Rows, &Set)| rows.mean_half_width(set);
+        let mean = |(rows, set): (&JointErrors, &TrackedSet)| rows.mean_half_width(set);
         let sum: f64 = self.joints.iter().zip(&sets).map(mean).sum();
         let mean_half_width = factor * sum / sets.len() as f64;
-        Ok(Tried { family, sets, needed, factor, mean_half_width })
+        Ok(FittedFamily { family, sets, needed, factor, mean_half_width })
     }
 
     /// Returns all families, and the place of the simplest whose sets with their factor are about
     /// the smallest.
-    pub(crate) fn choose(&self) -> Result<(Vec<Tried>, usize)> {
+    pub(crate) fn choose(&self) -> Result<(Vec<FittedFamily>, usize)> {
         let all = (0..FAMILIES.len()).map(|family| self.tried(family));
-        let all: Vec<Tried> = all.collect::<Result<_>>()?;
+        let all: Vec<FittedFamily> = all.collect::<Result<_>>()?;
         let least = all.iter().map(|tried| tried.mean_half_width).fold(f64::INFINITY, f64::min);
-        let is_good = |tried: &Tried| tried.mean_half_width * (1.0 - BETTER) <= least;
+        let is_good = |tried: &FittedFamily| tried.mean_half_width * (1.0 - BETTER) <= least;
         let chosen = all.iter().position(is_good).unwrap_or_default();
         Ok((all, chosen))
     }
 
     /// Returns how many motions lie inside the sets with their factor, if both are found without
     /// them; `None` if that was not tried.
-    pub(crate) fn inside(&self, chosen: &Tried) -> Result<Option<usize>> {
+    pub(crate) fn inside(&self, chosen: &FittedFamily) -> Result<Option<usize>> {
         let fitted = self.fitted();
         if self.is_split() || !(3..=MOST_NESTED).contains(&fitted.len()) {
             return Ok(None);

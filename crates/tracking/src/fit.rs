@@ -6,18 +6,21 @@ use microlp::{ComparisonOp, OptimizationDirection, Problem, Variable};
 use crate::basis::TERMS;
 use crate::error::{Error, Result};
 
-/// Rows are added until none is violated by more than this part of the set.
+/// JointErrors are added until none is violated by more than this part of the set.
 const TOLERANCE: f64 = 1e-6;
 
-/// A joint whose command spans less than this stands still, rad or m.
+/// A joint whose command spans less than this stands still, and has no lag, rad or m.
 const STILL: f64 = 1e-3;
+
+/// A half-width that nothing is divided by.
+const TINY: f64 = 1e-300;
 
 /// Largest number of rounds of added rows.
 const ROUNDS: usize = 100;
 
 /// The error of one joint at some samples, and what it may depend on.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Rows {
+pub(crate) struct JointErrors {
     /// The actual position minus the commanded one, rad.
     pub error: Vec<f64>,
     /// The commanded position, rad.
@@ -28,7 +31,7 @@ pub(crate) struct Rows {
 
 /// What a set depends on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Form {
+pub(crate) struct SetForm {
     /// The terms of the nominal error.
     pub terms: &'static [usize],
     /// Whether the half-width grows with the commanded speed.
@@ -37,38 +40,38 @@ pub(crate) struct Form {
 
 /// A nominal error θ · (1, ṙ, r̈, direction) and a half-width ρ0 + ρ1 |ṙ| about it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Set {
+pub(crate) struct TrackedSet {
     pub factors: [f64; TERMS],
     pub radius: [f64; 2],
 }
 
-impl Set {
+impl TrackedSet {
     /// Returns the half-width at a commanded speed.
     pub(crate) fn half_width(&self, speed: f64) -> f64 {
         self.radius[0] + self.radius[1] * speed.abs()
     }
 }
 
-impl Rows {
+impl JointErrors {
     /// Returns the error of a row without its nominal part.
     pub(crate) fn rest(&self, row: usize, factors: &[f64; TERMS]) -> f64 {
         let nominal = factors.iter().zip(&self.terms[row]).map(|(a, b)| a * b).sum::<f64>();
         self.error[row] - nominal
     }
 
-    pub(crate) fn half_width(&self, row: usize, set: &Set) -> f64 {
+    pub(crate) fn half_width(&self, row: usize, set: &TrackedSet) -> f64 {
         set.half_width(self.terms[row][1])
     }
 
     /// Returns the mean half-width of a set over all rows.
-    pub(crate) fn mean_half_width(&self, set: &Set) -> f64 {
+    pub(crate) fn mean_half_width(&self, set: &TrackedSet) -> f64 {
         let count = self.terms.len();
         (0..count).map(|row| self.half_width(row, set)).sum::<f64>() / count as f64
     }
 
     /// Returns the largest part of a set that some rows need; more than 1 is outside. A set without
     /// width holds rows without a rest.
-    pub(crate) fn needed(&self, rows: impl Iterator<Item = usize>, set: &Set) -> f64 {
+    pub(crate) fn needed(&self, rows: impl Iterator<Item = usize>, set: &TrackedSet) -> f64 {
         let of = |row: usize| match self.rest(row, &set.factors).abs() {
             0.0 => 0.0,
             rest => rest / self.half_width(row, set),
@@ -77,7 +80,7 @@ impl Rows {
     }
 
     /// Returns the row that is the furthest above its set, and the one furthest below.
-    fn ends(&self, rows: impl Iterator<Item = usize>, set: &Set) -> [(usize, f64); 2] {
+    fn ends(&self, rows: impl Iterator<Item = usize>, set: &TrackedSet) -> [(usize, f64); 2] {
         let mut ends = [(0, f64::NEG_INFINITY); 2];
         for row in rows {
             let (rest, width) = (self.rest(row, &set.factors), self.half_width(row, set));
@@ -99,86 +102,99 @@ impl Rows {
     pub(crate) fn smallest(
         &self,
         rows: impl Iterator<Item = usize> + Clone,
-        form: Form,
+        form: SetForm,
         least: f64,
-        near: &Set,
-    ) -> Result<Set> {
-        let mut largest = [0.0f64; TERMS];
-        let (mut furthest, mut speed, mut count) = (least, 0.0, 0.0);
-        let mut span = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut set = Set { factors: [0.0; TERMS], radius: [least, 0.0] };
+        near: &TrackedSet,
+    ) -> Result<TrackedSet> {
+        let mut set = TrackedSet { factors: [0.0; TERMS], radius: [least, 0.0] };
         form.terms.iter().for_each(|term| set.factors[*term] = near.factors[*term]);
-        for row in rows.clone() {
-            let sizes = largest.iter_mut().zip(&self.terms[row]);
-            sizes.for_each(|(largest, term)| *largest = largest.max(term.abs()));
-            furthest = furthest.max(self.rest(row, &set.factors).abs());
-            (speed, count) = (speed + self.terms[row][1].abs(), count + 1.0);
-            span = [span[0].min(self.command[row]), span[1].max(self.command[row])];
-        }
-        // A joint that stands still tells nothing of its lag.
-        if span[1] - span[0] < STILL {
-            largest[1..].fill(0.0);
-            set.factors[1..].fill(0.0);
-        }
+        let RowSizes { units, furthest, mean_speed } = self.scale(rows.clone(), &mut set);
         if furthest == 0.0 {
             return Ok(set);
         }
-        // Each unknown in units in which it matters as much as the others.
-        let terms = form.terms.iter().copied().filter(|term| largest[*term] > 0.0);
-        let units: Vec<(usize, f64)> = terms.map(|term| (term, largest[term])).collect();
-        let mean = speed / count / largest[1];
-        let grows = form.grows && largest[1] > 0.0;
-        let mut program = Program {
-            unknowns: units.len(),
-            mean: grows.then_some(mean),
+        let terms = form.terms.iter().copied().filter(|term| units[*term] > 0.0);
+        let terms: Vec<usize> = terms.collect();
+        let grows = form.grows && units[1] > 0.0;
+        let mut program = LeastWidth {
+            unknowns: terms.len(),
+            mean: grows.then(|| mean_speed / units[1]),
             least: least / furthest,
             rows: Vec::new(),
         };
         let start = set.factors;
         for _ in 0..ROUNDS {
             let ends = self.ends(rows.clone(), &set);
-            let worst = ends.map(|(row, beyond)| beyond / self.half_width(row, &set).max(1e-300));
-            if !program.rows.is_empty() && worst.iter().all(|part| *part <= TOLERANCE) {
+            let beyond = ends.map(|(row, beyond)| beyond / self.half_width(row, &set).max(TINY));
+            if !program.rows.is_empty() && beyond.iter().all(|part| *part <= TOLERANCE) {
                 break;
             }
-            program.rows.extend(ends.map(|(row, _)| ProgramRow {
-                terms: units.iter().map(|(term, unit)| self.terms[row][*term] / unit).collect(),
-                speed: self.terms[row][1].abs() / largest[1].max(f64::MIN_POSITIVE),
+            program.rows.extend(ends.map(|(row, _)| WidthRow {
+                terms: terms.iter().map(|term| self.terms[row][*term] / units[*term]).collect(),
+                speed: if grows { self.terms[row][1].abs() / units[1] } else { 0.0 },
                 rest: self.rest(row, &start) / furthest,
             }));
             let found = program.solve()?;
-            for ((term, unit), value) in units.iter().zip(&found) {
-                set.factors[*term] = start[*term] + value * furthest / unit;
+            for (term, value) in terms.iter().zip(&found) {
+                set.factors[*term] = start[*term] + value * furthest / units[*term];
             }
-            set.radius[0] = found[units.len()] * furthest;
-            set.radius[1] = match grows {
-                true => found[units.len() + 1] * furthest / largest[1],
-                false => 0.0,
-            };
+            let growth =
+                found.get(terms.len() + 1).map_or(0.0, |value| value * furthest / units[1]);
+            set.radius = [found[terms.len()] * furthest, growth];
         }
         let grown = self.needed(rows, &set).max(1.0);
         set.radius.iter_mut().for_each(|radius| *radius *= grown);
         Ok(set)
     }
+
+    /// Returns units of the unknowns in which each matters as much as the others. A joint that
+    /// stands still has an offset only, in `set` too.
+    fn scale(&self, rows: impl Iterator<Item = usize>, set: &mut TrackedSet) -> RowSizes {
+        let mut units = [0.0f64; TERMS];
+        let (mut speed, mut count) = (0.0, 0usize);
+        let mut span = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut furthest = set.radius[0];
+        for row in rows {
+            let sizes = units.iter_mut().zip(&self.terms[row]);
+            sizes.for_each(|(unit, term)| *unit = unit.max(term.abs()));
+            furthest = furthest.max(self.rest(row, &set.factors).abs());
+            (speed, count) = (speed + self.terms[row][1].abs(), count + 1);
+            span = [span[0].min(self.command[row]), span[1].max(self.command[row])];
+        }
+        if span[1] - span[0] < STILL {
+            units[1..].fill(0.0);
+            set.factors[1..].fill(0.0);
+        }
+        RowSizes { units, furthest, mean_speed: speed / count as f64 }
+    }
+}
+
+/// The sizes of the numbers in rows.
+struct RowSizes {
+    /// The largest size of each term, or 0 for one that does not count.
+    units: [f64; TERMS],
+    /// The largest distance from a guess.
+    furthest: f64,
+    /// The mean commanded speed.
+    mean_speed: f64,
 }
 
 /// The program min ρ0 + mean ρ1 subject to |rest - θ · terms| <= ρ0 + ρ1 speed, ρ0 >= least.
-struct Program {
+struct LeastWidth {
     /// The number of terms.
     unknowns: usize,
     /// The mean speed, if there is a ρ1.
     mean: Option<f64>,
     least: f64,
-    rows: Vec<ProgramRow>,
+    rows: Vec<WidthRow>,
 }
 
-struct ProgramRow {
+struct WidthRow {
     terms: Vec<f64>,
     speed: f64,
     rest: f64,
 }
 
-impl Program {
+impl LeastWidth {
     /// Returns θ, ρ0 and, if there is one, ρ1.
     fn solve(&self) -> Result<Vec<f64>> {
         let mut problem = Problem::new(OptimizationDirection::Minimize);
@@ -187,7 +203,7 @@ impl Program {
         let mut variables: Vec<Variable> = free.collect();
         variables.push(problem.add_var(1.0, (self.least, infinity)));
         variables.extend(self.mean.map(|mean| problem.add_var(mean, (0.0, infinity))));
-        for ProgramRow { terms, speed, rest } in &self.rows {
+        for WidthRow { terms, speed, rest } in &self.rows {
             for sign in [1.0, -1.0] {
                 let factors = terms.iter().map(|term| sign * term).chain([1.0, *speed]);
                 let row = variables.iter().copied().zip(factors);
@@ -209,20 +225,20 @@ mod tests {
 
     use super::*;
 
-    fn rows(errors: &[f64], speeds: &[f64]) -> Rows {
+    fn rows(errors: &[f64], speeds: &[f64]) -> JointErrors {
         let terms = speeds.iter().map(|v| [1.0, *v, v * v - 1.0, v.signum()]).collect();
-        Rows { error: errors.to_vec(), command: speeds.to_vec(), terms }
+        JointErrors { error: errors.to_vec(), command: speeds.to_vec(), terms }
     }
 
     #[test]
     fn the_middle_of_errors_is_their_best_offset() {
         let rows = rows(&[0.25, -0.5, 0.125, 1.0], &[1.0, 2.0, 3.0, 4.0]);
-        let form = Form { terms: &[0], grows: false };
-        let found = rows.smallest(0..4, form, 0.0, &Set::default()).unwrap();
+        let form = SetForm { terms: &[0], grows: false };
+        let found = rows.smallest(0..4, form, 0.0, &TrackedSet::default()).unwrap();
         assert!((found.factors[0] - 0.25).abs() < 1e-9, "{found:?}");
         assert_eq!((&found.factors[1..], found.radius[1]), (&[0.0; 3][..], 0.0));
         assert!((found.radius[0] - 0.75).abs() < 1e-9);
-        let wide = rows.smallest(0..4, form, 2.0, &Set::default()).unwrap();
+        let wide = rows.smallest(0..4, form, 2.0, &TrackedSet::default()).unwrap();
         assert_eq!(wide.radius, [2.0, 0.0]);
     }
 
@@ -237,8 +253,8 @@ mod tests {
         let rows = rows(&noisy.collect::<Vec<f64>>(), &speeds);
         let mean_speed = speeds.iter().map(|v| v.abs()).sum::<f64>() / 2000.0;
         for grows in [false, true] {
-            let form = Form { terms: &[0, 1, 2, 3], grows };
-            let found = rows.smallest(0..2000, form, 0.0, &Set::default()).unwrap();
+            let form = SetForm { terms: &[0, 1, 2, 3], grows };
+            let found = rows.smallest(0..2000, form, 0.0, &TrackedSet::default()).unwrap();
             assert!(rows.needed(0..2000, &found) <= 1.0 + 1e-12);
             if grows {
                 assert!((found.factors[1] + 9e-3).abs() < 1e-4, "{found:?}");
@@ -256,7 +272,7 @@ mod tests {
                     rest.abs() - other.radius[1] * speeds[row].abs()
                 };
                 other.radius[0] = (0..2000).map(beyond).fold(0.0, f64::max);
-                let mean = |set: &Set| set.half_width(mean_speed);
+                let mean = |set: &TrackedSet| set.half_width(mean_speed);
                 assert!(mean(&other) > mean(&found) * (1.0 - 1e-6), "{other:?}");
             }
         }

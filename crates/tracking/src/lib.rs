@@ -19,5 +19,5 @@ pub use check::{CheckedJoint, CheckedMotion, TrackingCheck};
 pub use code::Code;
 pub use error::{Error, Result};
 pub use make::{MadeModel, TriedFamily, make};
-pub use model::{JointTracking, LeftOutMotions, TrackedRecording, TrackingModel};
-pub use recording::{Reading, Recording};
+pub use model::{JointTracking, NeedsOfMotions, RunOfModel, TrackingModel};
+pub use recording::{Reading, TrackedRun};

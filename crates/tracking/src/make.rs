@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use crate::code::Code;
 use crate::error::{Error, Result};
-use crate::family::{Evidence, FAMILIES, Tried};
-use crate::fit::Set;
-use crate::model::{JointTracking, LeftOutMotions, TrackedRecording, TrackingModel};
-use crate::motion::{Motion, motions};
-use crate::recording::Recording;
+use crate::family::{FAMILIES, FittedFamily, TrackedRows};
+use crate::fit::TrackedSet;
+use crate::model::{JointTracking, NeedsOfMotions, RunOfModel, TrackingModel};
+use crate::motion::{MotionRows, motions};
+use crate::recording::TrackedRun;
 use crate::slip::slips;
 
 /// Fewest samples of a recording that are used.
@@ -67,20 +67,20 @@ impl MadeModel {
 /// # Panics
 ///
 /// Panics without a recording.
-pub fn make(recordings: &[Recording]) -> Result<MadeModel> {
-    recordings.iter().try_for_each(Recording::refuse_copy)?;
-    let (ranges, found): (Vec<_>, Vec<_>) = recordings.iter().map(Recording::following).unzip();
+pub fn make(recordings: &[TrackedRun]) -> Result<MadeModel> {
+    recordings.iter().try_for_each(TrackedRun::refuse_copy)?;
+    let (ranges, found): (Vec<_>, Vec<_>) = recordings.iter().map(TrackedRun::following).unzip();
     let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
     let parts = recordings.iter().zip(&ranges).filter(|(_, range)| range.len() >= FEWEST_ROWS);
-    let used: Vec<Recording> = parts.map(|(of, range)| of.only(range.clone())).collect();
+    let used: Vec<TrackedRun> = parts.map(|(of, range)| of.only(range.clone())).collect();
     if used.iter().all(|of| (0..of.times.len()).all(|k| of.speed(k) == 0.0)) {
         return Err(Error::NoMotion);
     }
     let motions = motions(&used);
-    let evidence = Evidence::new(&used, &motions);
-    let (tried, at) = evidence.choose()?;
+    let rows = TrackedRows::new(&used, &motions);
+    let (tried, at) = rows.choose()?;
     let chosen = &tried[at];
-    let recorded = recordings.iter().zip(&ranges).map(|(of, range)| TrackedRecording {
+    let recorded = recordings.iter().zip(&ranges).map(|(of, range)| RunOfModel {
         file: of.file.display().to_string(),
         sha256: of.sha256.clone(),
         samples: of.times.len(),
@@ -93,7 +93,7 @@ pub fn make(recordings: &[Recording]) -> Result<MadeModel> {
         verified: false,
         joints: joints(&used, chosen),
         factor: chosen.factor,
-        left_out: left_out(&motions, &evidence, chosen, evidence.inside(chosen)?),
+        left_out: left_out(&motions, &rows, chosen, rows.inside(chosen)?),
         recordings: recorded.collect(),
         sha256: String::new(),
     };
@@ -101,7 +101,7 @@ pub fn make(recordings: &[Recording]) -> Result<MadeModel> {
     let model = model.sealed();
     findings.extend(used.iter().filter_map(slips));
     findings.extend(against(&model));
-    let family = |of: &Tried| TriedFamily {
+    let family = |of: &FittedFamily| TriedFamily {
         depends_on: FAMILIES[of.family].words,
         grows: FAMILIES[of.family].form.grows,
         mean_half_width: of.mean_half_width,
@@ -111,10 +111,10 @@ pub fn make(recordings: &[Recording]) -> Result<MadeModel> {
 }
 
 /// Returns the joints with their sets, scaled by the factor, and what the recordings show of them.
-fn joints(recordings: &[Recording], chosen: &Tried) -> Vec<JointTracking> {
-    let of_joint = |(joint, set): (usize, &Set)| {
-        let Set { factors: [offset, speed, acceleration, direction], radius } = *set;
-        let largest = |value: &dyn Fn(&Recording, usize) -> f64| {
+fn joints(recordings: &[TrackedRun], chosen: &FittedFamily) -> Vec<JointTracking> {
+    let of_joint = |(joint, set): (usize, &TrackedSet)| {
+        let TrackedSet { factors: [offset, speed, acceleration, direction], radius } = *set;
+        let largest = |value: &dyn Fn(&TrackedRun, usize) -> f64| {
             let rows = recordings.iter().flat_map(|of| (0..of.times.len()).map(move |k| (of, k)));
             rows.map(|(of, k)| value(of, k).abs()).fold(0.0, f64::max)
         };
@@ -137,16 +137,16 @@ fn joints(recordings: &[Recording], chosen: &Tried) -> Vec<JointTracking> {
 
 /// Returns what the motions said that were left out.
 fn left_out(
-    motions: &[Motion],
-    evidence: &Evidence,
-    chosen: &Tried,
+    motions: &[MotionRows],
+    rows: &TrackedRows,
+    chosen: &FittedFamily,
     inside: Option<usize>,
-) -> LeftOutMotions {
-    let kept = evidence.is_kept.iter().filter(|is_kept| **is_kept).count();
-    let seen = motions.iter().zip(&evidence.is_kept);
+) -> NeedsOfMotions {
+    let kept = rows.is_kept.iter().filter(|is_kept| **is_kept).count();
+    let seen = motions.iter().zip(&rows.is_kept);
     let needed = seen.filter(|(_, is_kept)| kept == 0 || **is_kept).zip(&chosen.needed);
     let furthest = needed.max_by(|(_, a), (_, b)| a.total_cmp(b));
-    LeftOutMotions {
+    NeedsOfMotions {
         motions: motions.len(),
         calibrated: (kept > 0).then_some(kept),
         furthest: furthest.map(|((motion, _), _)| motion.name.clone()),
@@ -156,10 +156,10 @@ fn left_out(
 
 /// Raises each half-width at rest to what a proof of every sample needs, by rounding at most where
 /// the program was solved, and states that they are proved.
-fn hold_all(model: &mut TrackingModel, recordings: &[Recording]) {
+fn hold_all(model: &mut TrackingModel, recordings: &[TrackedRun]) {
     for joint in 0..model.joints.len() {
         let beyond = |of_joint: &JointTracking| {
-            let of = |of: &Recording| {
+            let of = |of: &TrackedRun| {
                 let rows = (0..of.times.len()).map(|k| {
                     let (rest, half_width) = of_joint.beside(of, k, joint);
                     sub_up(rest.mag(), half_width)
@@ -177,7 +177,7 @@ fn hold_all(model: &mut TrackingModel, recordings: &[Recording]) {
         }
     }
     let holds = |(joint, of_joint): (usize, &JointTracking)| {
-        let of = |of: &Recording| {
+        let of = |of: &TrackedRun| {
             (0..of.times.len()).all(|k| {
                 let (rest, half_width) = of_joint.beside(of, k, joint);
                 rest.mag() <= half_width
@@ -192,8 +192,8 @@ fn hold_all(model: &mut TrackingModel, recordings: &[Recording]) {
 fn against(model: &TrackingModel) -> Vec<Finding> {
     let mut found = Vec::new();
     if !model.has_motions() {
-        let text = "With fewer than 3 motions nothing is known of others; record more of them, with \
-                    a rest between them.";
+        let text = "With fewer than 3 motions, the sets describe these recordings only; record more, \
+                    with a rest between motions.";
         found.push(Finding::new(Severity::Warning, Code::FewMotions, text));
     } else if model.mean_half_width() >= model.mean_without_model() {
         let text = "The sets are not narrower than the largest recorded error + 20 %, which needs no \

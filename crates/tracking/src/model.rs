@@ -11,7 +11,7 @@ use sha2::{Digest, Sha256};
 
 use crate::basis::{TERMS, enclosed_direction};
 use crate::error::{Error, Result};
-use crate::recording::Recording;
+use crate::recording::TrackedRun;
 
 /// What the field `format` of every file says.
 pub(crate) const FORMAT: &str = "reachtube-tracking-model";
@@ -20,8 +20,8 @@ pub(crate) const FORMAT: &str = "reachtube-tracking-model";
 pub(crate) const VERSION: u32 = 1;
 
 /// A model of an arm under its controller: at each sample of a command r, the actual position y of
-/// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. ṙ and r̈ are those of the
-/// parabola through the sample and its neighbours; d is the direction of the command, from -1 to 1.
+/// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. The parabola through
+/// the sample and its neighbours has the speed ṙ and the acceleration r̈; d is the direction of the command, from -1 to 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackingModel {
@@ -41,9 +41,9 @@ pub struct TrackingModel {
     /// for a motion, over all joints.
     pub factor: f64,
     /// The motions that decided the factor, and how it was found.
-    pub left_out: LeftOutMotions,
+    pub left_out: NeedsOfMotions,
     /// The recordings.
-    pub recordings: Vec<TrackedRecording>,
+    pub recordings: Vec<RunOfModel>,
     /// SHA-256 of the rest of the file's content, so that a change is noticed.
     pub sha256: String,
 }
@@ -68,7 +68,7 @@ pub struct JointTracking {
     pub radius: f64,
     /// By how much it grows with the commanded speed, ρ1 with its factor, s.
     pub radius_per_speed: f64,
-    /// The highest commanded speed of the recordings, rad/s. The model says nothing of faster ones.
+    /// The highest commanded speed of the recordings, rad/s. The sets are not for faster ones.
     pub largest_speed: f64,
     /// The highest commanded acceleration of the recordings, rad/s².
     pub largest_acceleration: f64,
@@ -79,7 +79,7 @@ pub struct JointTracking {
 /// How the motions were used that the factor comes from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct LeftOutMotions {
+pub struct NeedsOfMotions {
     /// The number of motions.
     pub motions: usize,
     /// The number of motions that neither fit nor choice have seen and that the factor comes from;
@@ -98,7 +98,7 @@ pub struct LeftOutMotions {
 /// A recording that a model was made of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct TrackedRecording {
+pub struct RunOfModel {
     /// The file.
     pub file: String,
     /// Its SHA-256.
@@ -120,7 +120,7 @@ impl JointTracking {
     /// # Guarantee
     ///
     /// The position is enclosed, and the half-width a lower bound; directed rounding.
-    pub(crate) fn beside(&self, recording: &Recording, k: usize, joint: usize) -> (Interval, f64) {
+    pub(crate) fn beside(&self, recording: &TrackedRun, k: usize, joint: usize) -> (Interval, f64) {
         let at = k * recording.joint_count() + joint;
         let position = |of: &[f64]| Interval::point(of[at]);
         let [speed, acceleration] = recording.rates::<Interval>(k, joint);

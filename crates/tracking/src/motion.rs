@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use crate::recording::Recording;
+use crate::recording::TrackedRun;
 
 /// A command rests where no joint is faster than this part of the highest speed of the recording.
 const REST_SPEED: f64 = 0.1;
@@ -10,7 +10,7 @@ const REST: f64 = 0.3;
 
 /// Samples of one motion: from the middle of one rest to the middle of the next.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Motion {
+pub(crate) struct MotionRows {
     /// Index of the recording.
     pub recording: usize,
     pub rows: Range<usize>,
@@ -19,14 +19,14 @@ pub(crate) struct Motion {
 }
 
 /// Cuts recordings at rests of the command. Each sample belongs to one motion.
-pub(crate) fn motions(recordings: &[Recording]) -> Vec<Motion> {
+pub(crate) fn motions(recordings: &[TrackedRun]) -> Vec<MotionRows> {
     let mut all = Vec::new();
     for (index, recording) in recordings.iter().enumerate() {
         let mut ends = vec![0];
         ends.extend(middles_of_rests(recording));
         ends.push(recording.times.len());
         let name = recording.name();
-        all.extend(ends.windows(2).enumerate().map(|(number, pair)| Motion {
+        all.extend(ends.windows(2).enumerate().map(|(number, pair)| MotionRows {
             recording: index,
             rows: pair[0]..pair[1],
             name: if ends.len() > 2 { format!("{name}:{}", number + 1) } else { name.clone() },
@@ -36,7 +36,7 @@ pub(crate) fn motions(recordings: &[Recording]) -> Vec<Motion> {
 }
 
 /// Returns the samples in the middle of each rest between motions.
-fn middles_of_rests(recording: &Recording) -> Vec<usize> {
+fn middles_of_rests(recording: &TrackedRun) -> Vec<usize> {
     let (times, samples) = (&recording.times, recording.times.len());
     let speeds: Vec<f64> = (0..samples).map(|k| recording.speed(k)).collect();
     let fastest = speeds.iter().copied().fold(0.0, f64::max);
@@ -57,13 +57,13 @@ mod tests {
     use super::*;
 
     /// Two motions with a rest of `rest` seconds between them, and rests before and after.
-    fn recording(rest: f64) -> Recording {
+    fn recording(rest: f64) -> TrackedRun {
         let times: Vec<f64> = (0..600).map(|k| 0.01 * f64::from(k)).collect();
         let moved = |t: f64| (t.clamp(0.0, 1.0) * std::f64::consts::PI).cos();
         let command = times.iter().map(|t| moved(t - 0.5) - moved(t - 1.5 - rest)).collect();
         let actual = vec![0.0; 600];
         let (file, joints, sha256) = ("a/two.csv".into(), vec!["a".into()], String::new());
-        Recording { file, joints, units: vec!["rad"], times, command, actual, sha256 }
+        TrackedRun { file, joints, units: vec!["rad"], times, command, actual, sha256 }
     }
 
     #[test]

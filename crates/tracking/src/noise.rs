@@ -1,4 +1,4 @@
-use crate::recording::Recording;
+use crate::recording::TrackedRun;
 
 /// A joint rests where its command moves by less than this from sample to sample, rad or m.
 const REST: f64 = 1e-5;
@@ -14,7 +14,7 @@ const PER_MEDIAN: f64 = 1.4826;
 
 /// Returns three robust standard deviations of the noise of the actual position of a joint at rest,
 /// from second differences, whose variance is 6 times the noise's; 0 if it hardly rests.
-pub(crate) fn at_rest(recordings: &[Recording], joint: usize) -> f64 {
+pub(crate) fn at_rest(recordings: &[TrackedRun], joint: usize) -> f64 {
     let mut differences = Vec::new();
     for of in recordings {
         let n = of.joint_count();

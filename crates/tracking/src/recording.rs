@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// Samples of the commanded and the actual positions of n joints.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
+pub struct TrackedRun {
     /// The file, or its first one.
     pub file: PathBuf,
     /// The names of the joints.
@@ -44,8 +44,8 @@ impl Reading<'_> {
     /// # Errors
     ///
     /// Defects of files, paths without a log, and logs of different joints.
-    pub fn read(&self, paths: &[PathBuf]) -> Result<(Vec<Recording>, Vec<String>)> {
-        let (mut recordings, mut notes) = (Vec::<Recording>::new(), Vec::new());
+    pub fn read(&self, paths: &[PathBuf]) -> Result<(Vec<TrackedRun>, Vec<String>)> {
+        let (mut recordings, mut notes) = (Vec::<TrackedRun>::new(), Vec::new());
         for path in paths {
             let logs = LogFiles::find(path)?;
             if logs.is_empty() {
@@ -64,7 +64,7 @@ impl Reading<'_> {
         if recordings.is_empty() { Err(Error::NoData) } else { Ok((recordings, notes)) }
     }
 
-    fn read_csv(&self, files: &[PathBuf]) -> Result<(Recording, Vec<String>)> {
+    fn read_csv(&self, files: &[PathBuf]) -> Result<(TrackedRun, Vec<String>)> {
         let options = LoggedOptions {
             robot: self.axes,
             joints: &[],
@@ -83,7 +83,7 @@ impl Reading<'_> {
             Some(axes) => axes.iter().map(|axis| axis.name.clone()).collect(),
             None => of_columns,
         };
-        let recording = Recording {
+        let recording = TrackedRun {
             file: files[0].clone(),
             units: match self.axes {
                 Some(axes) => axes.iter().map(|axis| axis.units[0]).collect(),
@@ -101,7 +101,7 @@ impl Reading<'_> {
 }
 
 /// Refuses a recording of other joints than the first one's.
-fn same_joints(first: Option<&Recording>, recording: &Recording) -> Result<()> {
+fn same_joints(first: Option<&TrackedRun>, recording: &TrackedRun) -> Result<()> {
     match first.filter(|first| first.joints != recording.joints) {
         None => Ok(()),
         Some(first) => Err(Error::Joints {
@@ -113,7 +113,7 @@ fn same_joints(first: Option<&Recording>, recording: &Recording) -> Result<()> {
     }
 }
 
-impl Recording {
+impl TrackedRun {
     fn check(&self) -> Result<()> {
         match self.times.len() {
             0..3 => Err(Error::Short { file: self.file.clone(), samples: self.times.len() }),

@@ -5,7 +5,7 @@ use reachtube_finding::{Finding, Severity};
 use reachtube_scalar::number::significant;
 
 use crate::code::Code;
-use crate::recording::Recording;
+use crate::recording::TrackedRun;
 
 /// Samples of this time share a slip, s.
 const WINDOW: f64 = 0.3;
@@ -13,15 +13,15 @@ const WINDOW: f64 = 0.3;
 /// Windows count in which the mean squared speed is at least this part of the largest.
 const FAST: f64 = 0.1;
 
-/// Slips are named if the errors are so many times smaller without them.
+/// Slips are named if errors are this many times smaller without them.
 const SMALLER: f64 = 2.0;
 
 /// Returns the finding that the clocks of a recording slip, if one slip for all joints in each short
 /// window explains most of what an offset, a lag and the acceleration leave.
-pub(crate) fn slips(recording: &Recording) -> Option<Finding> {
+pub(crate) fn slips(recording: &TrackedRun) -> Option<Finding> {
     let joints: Vec<Vec<[f64; 2]>> =
         (0..recording.joint_count()).map(|joint| rests(recording, joint)).collect();
-    // Of each window: Σ rest · speed, Σ speed², Σ rest² over its samples and joints.
+    // For each window: Σ rest · speed, Σ speed², Σ rest² over its samples and joints.
     let mut windows: Vec<[f64; 3]> = Vec::new();
     let mut end = f64::NEG_INFINITY;
     for (k, time) in recording.times.iter().enumerate() {
@@ -57,7 +57,7 @@ pub(crate) fn slips(recording: &Recording) -> Option<Finding> {
 
 /// Returns, for each sample of a joint, what the offset, the lag and the factor of the acceleration
 /// with the least squares leave of its error, and the commanded speed.
-fn rests(recording: &Recording, joint: usize) -> Vec<[f64; 2]> {
+fn rests(recording: &TrackedRun, joint: usize) -> Vec<[f64; 2]> {
     let samples = recording.times.len();
     let rates = (0..samples).map(|k| recording.rates::<f64>(k, joint));
     let rates: Vec<[f64; 2]> = rates.collect();

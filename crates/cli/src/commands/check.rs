@@ -6,7 +6,7 @@ use reachtube::tracking::TrackingModel;
 
 use crate::commands::tracking;
 use crate::data_arguments::ModelArguments;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::global::global;
 use crate::opened::OpenedCheck;
 use crate::option_values::choice;
@@ -37,7 +37,10 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     if TrackingModel::is_at(&args.model.model) {
-        return tracking::check(args, json);
+        return match args.notion {
+            Some(_) => Err(Error::setting(tracking::NO_TORQUES)),
+            None => tracking::check(&args.model, json),
+        };
     }
     let (opened, check, outcome) = compared(args)?;
     match json {

@@ -12,7 +12,7 @@ use reachtube::robot::{Lock, Robot};
 use reachtube::write;
 
 use crate::commands::conform::GROUPS;
-use crate::commands::tracking;
+use crate::commands::tracking::{self, TrackingArguments};
 use crate::data_arguments::TORQUES;
 use crate::error::{Error, NO_ROBOT, NO_TORQUE, Result};
 use crate::global::global;
@@ -80,8 +80,8 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
-    if choices(args)?.torque.is_none() {
-        return tracking::model(args, json);
+    if args.settings.is_none() && args.torque.is_none() {
+        return under_controller(args, json);
     }
     let made = Made::new(args)?;
     let outcome = made.outcome();
@@ -92,6 +92,22 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         made.print(args, &outcome)?;
     }
     Ok(outcome)
+}
+
+/// Makes a model of commanded and actual positions, without torques.
+fn under_controller(args: &Arguments, json: bool) -> Result<Outcome> {
+    let Arguments { horizon, held_out, gains, fit, .. } = args;
+    if horizon.is_some() || !(held_out.is_empty() && gains.is_empty() && fit.is_empty()) {
+        return Err(Error::setting(NO_TORQUE));
+    }
+    let of = TrackingArguments {
+        data: &args.data,
+        robot: args.robot.as_deref(),
+        lock: &args.lock.lock,
+        columns: args.log.columns.clone().unwrap_or_default(),
+        out: &args.out,
+    };
+    tracking::model(&of, json)
 }
 
 /// A model with the files that were written of it.

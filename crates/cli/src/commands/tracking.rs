@@ -1,20 +1,24 @@
 //! `reachtube model` and `check` of an arm under its controller.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use reachtube::axes;
-use reachtube::recordings::{Axis, ColumnSettings};
-use reachtube::robot::Robot;
+use reachtube::recordings::ColumnSettings;
+use reachtube::robot::{Lock, Robot};
 use reachtube::tracking::{MadeModel, Reading, TrackingModel, make};
 use reachtube::write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::commands::{check, model};
-use crate::error::{Error, NO_TORQUE, Result};
+use crate::data_arguments::ModelArguments;
+use crate::error::{Error, Result};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
+
+/// Options of `check` do not fit the model.
+pub(crate) const NO_TORQUES: &str = "the model is of an arm under its controller, and has no torques, suites and notions; leave \
+     --torque, --suites, --notion and --max-gap out";
 
 /// What `model --json` prints of an arm under its controller.
 #[derive(Serialize, JsonSchema)]
@@ -30,22 +34,27 @@ pub(crate) struct TrackingOutput<'a> {
     made: &'a MadeModel,
 }
 
+/// What a model of an arm under its controller is made of.
+pub(crate) struct TrackingArguments<'a> {
+    /// The logs.
+    pub data: &'a [PathBuf],
+    /// The robot, if one is given, and the joints of it that are held.
+    pub robot: Option<&'a str>,
+    pub lock: &'a [Lock],
+    /// Columns whose names do not tell.
+    pub columns: ColumnSettings,
+    /// The folder of the result.
+    pub out: &'a Path,
+}
+
 /// Makes a model of an arm under its controller.
-pub(crate) fn model(args: &model::Arguments, json: bool) -> Result<Outcome> {
-    let of_torque = args.settings.is_some()
-        || args.horizon.is_some()
-        || !(args.held_out.is_empty() && args.gains.is_empty() && args.fit.is_empty());
-    if of_torque {
-        return Err(Error::setting(NO_TORQUE));
-    }
+pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
     let path = args.out.join("model.json");
     output::claim(&path)?;
-    let lock = &args.lock.lock;
-    let robot =
-        args.robot.as_deref().map(|name| Robot::load_to_identify(name, lock)).transpose()?;
+    let robot = args.robot.map(|name| Robot::load_to_identify(name, args.lock)).transpose()?;
     let axes = robot.map(|(robot, _)| axes(&robot));
-    let columns = args.log.columns.clone().unwrap_or_default();
-    let (recordings, notes) = reading(axes.as_deref(), &columns).read(&args.data)?;
+    let reading = Reading { axes: axes.as_deref(), columns: &args.columns, until: None };
+    let (recordings, notes) = reading.read(args.data)?;
     output::notes(&notes);
     let bar = Progress::of("making a model");
     let made = make(&recordings)?;
@@ -75,21 +84,14 @@ pub(crate) fn model(args: &model::Arguments, json: bool) -> Result<Outcome> {
 }
 
 /// Compares logs with a model of an arm under its controller.
-pub(crate) fn check(args: &check::Arguments, json: bool) -> Result<Outcome> {
-    let data = &args.model.data;
-    let is_other = args.notion.is_some()
-        || data.torque.is_some()
-        || data.max_gap.is_some()
-        || !data.suites.is_empty();
-    if is_other {
-        return Err(Error::setting(
-            "the model is of an arm under its controller, and has no torques, suites and notions; \
-             leave --torque, --suites, --notion and --max-gap out",
-        ));
+pub(crate) fn check(args: &ModelArguments, json: bool) -> Result<Outcome> {
+    let ModelArguments { model, data } = args;
+    if data.torque.is_some() || data.max_gap.is_some() || !data.suites.is_empty() {
+        return Err(Error::setting(NO_TORQUES));
     }
-    let model = TrackingModel::open(&args.model.model)?;
+    let model = TrackingModel::open(model)?;
     let columns = ColumnSettings::default();
-    let reading = Reading { until: data.until, ..reading(None, &columns) };
+    let reading = Reading { axes: None, columns: &columns, until: data.until };
     let (recordings, notes) = reading.read(&[PathBuf::from(&data.data)])?;
     output::notes(&notes);
     let check = model.check(&recordings)?;
@@ -103,8 +105,4 @@ pub(crate) fn check(args: &check::Arguments, json: bool) -> Result<Outcome> {
         false => output::print_verdict(&check.summary(&model).to_string(), &outcome)?,
     }
     Ok(outcome)
-}
-
-fn reading<'a>(axes: Option<&'a [Axis]>, columns: &'a ColumnSettings) -> Reading<'a> {
-    Reading { axes, columns, until: None }
 }
