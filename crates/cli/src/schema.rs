@@ -18,7 +18,7 @@ use crate::commands::r#abstract::AbstractOutput;
 use crate::commands::convert::ConvertOutput;
 use crate::commands::demo::DemoOutput;
 use crate::commands::excite::ExciteOutput;
-use crate::commands::export::{ModelExport, RobotExport, ShieldExport};
+use crate::commands::export::{ModelExport, RobotExport, ShieldExport, TolerancesExport};
 use crate::commands::monitor::Event;
 use crate::commands::prepare::PrepareOutput;
 use crate::commands::reach::ReachOutput;
@@ -63,6 +63,7 @@ fn results() -> Value {
             ("export", ModelExport::json_schema),
             ("export_robot", RobotExport::json_schema),
             ("export_shield", ShieldExport::json_schema),
+            ("export_tolerances", TolerancesExport::json_schema),
             ("identify", Summary::json_schema),
             ("inspect", Inspection::json_schema),
             ("inspect_logs", LogInspection::json_schema),

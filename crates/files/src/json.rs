@@ -30,7 +30,9 @@ pub fn versioned(
     let value: serde_json::Value =
         serde_json::from_str(text).map_err(|error| format!("it is not JSON: {error}; {remedy}"))?;
     if value["format"] != format {
-        return Err(format!("its format is not \"{format}\"; {remedy}"));
+        let other = value["format"].as_str().map(|other| format!(", but \"{other}\""));
+        let other = other.unwrap_or_default();
+        return Err(format!("its format is not \"{format}\"{other}; {remedy}"));
     }
     if value["version"] != version {
         let found = &value["version"];

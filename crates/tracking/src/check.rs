@@ -57,7 +57,7 @@ impl TrackingModel {
     ///
     /// # Guarantee
     ///
-    /// A sample that is not counted as outside is proved to lie in the sets, with directed rounding.
+    /// A sample that is not counted as outside is proved to lie in the sets; directed rounding.
     ///
     /// # Errors
     ///

@@ -93,8 +93,8 @@ impl JointErrors {
         ends
     }
 
-    /// Returns the set of a form that holds some rows with the least mean half-width. Its half-width
-    /// at rest is at least `least`; `near` is a guess.
+    /// Returns the set of a form that holds some rows with the least mean half-width. At rest, its
+    /// half-width is at least `least`; `near` is a guess.
     ///
     /// # Errors
     ///

@@ -13,6 +13,7 @@ mod motion;
 mod noise;
 mod recording;
 mod slip;
+mod tolerances;
 mod words;
 
 pub use check::{CheckedJoint, CheckedMotion, TrackingCheck};

@@ -55,9 +55,9 @@ impl MadeModel {
 /// Makes a model of commanded and actual positions of one arm.
 ///
 /// The nominal error of each joint and the least radius that holds all samples are found together
-/// by a linear program. The family of nominal errors, and one factor for all sets, come from motions
-/// that are left out in turn; from 20 recordings on, from every second one, which nothing else has
-/// seen. At last every sample is proved to lie in the sets, with directed rounding.
+/// by a linear program. The family of nominal errors, and one factor for all sets, come from
+/// motions that are left out in turn; from 20 recordings on, from every second one, which nothing
+/// else has seen. At last every sample is proved to lie in the sets, with directed rounding.
 ///
 /// # Errors
 ///
@@ -192,12 +192,12 @@ fn hold_all(model: &mut TrackingModel, recordings: &[TrackedRun]) {
 fn against(model: &TrackingModel) -> Vec<Finding> {
     let mut found = Vec::new();
     if !model.has_motions() {
-        let text = "With fewer than 3 motions, the sets describe these recordings only; record more, \
-                    with a rest between motions.";
+        let text = "With fewer than 3 motions, the sets describe these recordings only; record \
+                    more, with a rest between motions.";
         found.push(Finding::new(Severity::Warning, Code::FewMotions, text));
     } else if model.mean_half_width() >= model.mean_without_model() {
-        let text = "The sets are not narrower than the largest recorded error + 20 %, which needs no \
-                    model; record more motions that are alike.";
+        let text = "The sets are not narrower than the largest recorded error + 20 %, which needs \
+                    no model; record more motions that are alike.";
         found.push(Finding::new(Severity::Warning, Code::NotNarrower, text));
     }
     found

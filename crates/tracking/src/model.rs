@@ -20,8 +20,9 @@ pub(crate) const FORMAT: &str = "reachtube-tracking-model";
 pub(crate) const VERSION: u32 = 1;
 
 /// A model of an arm under its controller: at each sample of a command r, the actual position y of
-/// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. The parabola through
-/// the sample and its neighbours has the speed ṙ and the acceleration r̈; d is the direction of the command, from -1 to 1.
+/// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. The parabola through the
+/// sample and its neighbours has the speed ṙ and the acceleration r̈; d is the direction of the
+/// command, from -1 to 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackingModel {

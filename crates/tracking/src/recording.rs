@@ -38,8 +38,8 @@ pub struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    /// Reads the commanded and actual positions of all logs at some paths, files or folders. The
-    /// notes say how they were read.
+    /// Reads the commanded and actual positions of all logs at some paths, files or folders, but
+    /// not of copies. The notes say how they were read.
     ///
     /// # Errors
     ///
@@ -58,7 +58,13 @@ impl Reading<'_> {
                 };
                 notes.extend(own);
                 same_joints(recordings.first(), &recording)?;
-                recordings.push(recording);
+                match recordings.iter().find(|other| other.sha256 == recording.sha256) {
+                    None => recordings.push(recording),
+                    Some(other) => {
+                        let [copy, of] = [&recording, other].map(|of| of.file.display());
+                        notes.push(format!("{copy} is a copy of {of}; it is not used"));
+                    }
+                }
             }
         }
         if recordings.is_empty() { Err(Error::NoData) } else { Ok((recordings, notes)) }
@@ -79,9 +85,13 @@ impl Reading<'_> {
         let run = logged.run;
         let n = run.joints;
         let of_columns = logged.understood.map(|of| of.joints).unwrap_or_default();
+        let of_columns = of_columns.into_iter().map(|name| match name.parse::<usize>() {
+            Ok(number) => format!("joint_{number}"),
+            Err(_) => name,
+        });
         let joints = match self.axes {
             Some(axes) => axes.iter().map(|axis| axis.name.clone()).collect(),
-            None => of_columns,
+            None => of_columns.collect(),
         };
         let recording = TrackedRun {
             file: files[0].clone(),

@@ -16,8 +16,8 @@ const FAST: f64 = 0.1;
 /// Slips are named if errors are this many times smaller without them.
 const SMALLER: f64 = 2.0;
 
-/// Returns the finding that the clocks of a recording slip, if one slip for all joints in each short
-/// window explains most of what an offset, a lag and the acceleration leave.
+/// Returns the finding that the clocks of a recording slip, if one slip for all joints in each
+/// short window explains most of what an offset, a lag and the acceleration leave.
 pub(crate) fn slips(recording: &TrackedRun) -> Option<Finding> {
     let joints: Vec<Vec<[f64; 2]>> =
         (0..recording.joint_count()).map(|joint| rests(recording, joint)).collect();

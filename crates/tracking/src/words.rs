@@ -165,7 +165,8 @@ impl TrackingCheck {
             let known = model.joints.iter().find(|of| of.name == joint.name)?;
             Some(format!(
                 "The command of {} reaches {} {unit}/s, but the model was made of commands up to \
-                 {} {unit}/s and its sets are not for faster ones; add recordings that are as fast.",
+                 {} {unit}/s, and its sets are not for faster ones; add recordings that are as \
+                 fast.",
                 joint.name,
                 significant(speed, 3),
                 significant(known.largest_speed, 3),

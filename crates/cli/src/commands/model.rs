@@ -43,7 +43,7 @@ Exit codes: 0 conformant and useful, 1 not proved conformant, 2 error, 3 too wid
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Robot: the embedded lwa4p, or a TOML or URDF file; not needed without --torque
+    /// Robot: the embedded lwa4p, or a TOML or URDF file
     #[arg(long)]
     pub robot: Option<String>,
     #[command(flatten)]
@@ -51,8 +51,7 @@ pub(crate) struct Arguments {
     /// Logs: CSV files, MCAP, rosbag2, or folders of them
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub data: Vec<PathBuf>,
-    /// Meaning of the recorded torques [default: the model is of the arm under its controller, from
-    /// commanded and actual positions]
+    /// Meaning of the recorded torques
     #[arg(long, value_parser = choice::<Torque>(TORQUES))]
     pub torque: Option<Torque>,
     /// TOML file with choices, as this command writes it

@@ -17,8 +17,9 @@ use crate::output;
 use crate::progress::Progress;
 
 /// Options of `check` do not fit the model.
-pub(crate) const NO_TORQUES: &str = "the model is of an arm under its controller, and has no torques, suites and notions; leave \
-     --torque, --suites, --notion and --max-gap out";
+pub(crate) const NO_TORQUES: &str = "the model is of an arm under its controller, without \
+                                     torques, suites and notions; leave --torque, --suites, \
+                                     --notion and --max-gap out";
 
 /// What `model --json` prints of an arm under its controller.
 #[derive(Serialize, JsonSchema)]

@@ -1,6 +1,6 @@
 //! Every code of a finding is in docs/reference.md.
 
-use reachtube::{conform, pipeline, verify};
+use reachtube::{conform, pipeline, tracking, verify};
 
 #[test]
 fn every_code_is_in_the_docs() {
@@ -8,7 +8,8 @@ fn every_code_is_in_the_docs() {
     let of_models = conform::Code::ALL.iter().map(|code| code.name());
     let of_logs = pipeline::Code::ALL.iter().map(|code| code.name());
     let of_scenarios = verify::Code::ALL.iter().map(|code| code.name());
-    for name in of_models.chain(of_logs).chain(of_scenarios) {
+    let of_commands = tracking::Code::ALL.iter().map(|code| code.name());
+    for name in of_models.chain(of_logs).chain(of_scenarios).chain(of_commands) {
         assert!(docs.contains(&format!("| `{name}` |")), "{name}");
     }
 }

@@ -32,6 +32,8 @@ Tools, and what each supports:
               cubic one. urdf has no motor inertia; --update changes a URDF that is there
   sara-shield the radius by which the safety shield SaRA must grow each link, proved; limits in
               its file that --update names, cut to what the motions reach
+  ros2-control
+              tolerances of the trajectory controller, of a model of the arm under its controller
 Unsupported models are refused. The first lines of each file state what the tool computes.
 
 Examples:
@@ -41,6 +43,7 @@ Examples:
   reachtube export --robot identified.toml --to urdf --update arm.urdf --out robot
   reachtube export --model model.json --to sara-shield --data recordings --suites A --until 0.2 \\
     --update robot_parameters_schunk.yaml --out shield
+  reachtube export --model arm/model.json --to ros2-control --out tolerances
 
 Each suite, or run with a nominal motion of its own, gets a folder, which also holds our bounds
 (bounds.csv at samples, tube.csv between them) and the input (inputs.csv). docs/export.md says how
@@ -56,6 +59,7 @@ const TARGETS: Choices = &[
     ("mjcf", "MuJoCo, the robot"),
     ("urdf", "the robot"),
     ("sara-shield", "SaRA shield"),
+    ("ros2-control", "tolerances of joint_trajectory_controller"),
 ];
 
 const FORMS: Choices = &[
@@ -123,6 +127,9 @@ pub(crate) enum Target {
     /// The files of the shield SaRA.
     #[serde(rename = "sara-shield")]
     SaraShield,
+    /// The tolerances of ROS 2's trajectory controller.
+    #[serde(rename = "ros2-control")]
+    Ros2Control,
     /// A model for a tool.
     #[serde(untagged)]
     Tool(Tool),
@@ -134,6 +141,7 @@ impl Target {
             Self::Mjcf => "MuJoCo".into(),
             Self::Urdf => "URDF".into(),
             Self::SaraShield => "the SaRA shield".into(),
+            Self::Ros2Control => "ros2_control".into(),
             Self::Tool(tool) => tool.to_string(),
         }
     }
@@ -179,9 +187,14 @@ pub(super) fn load_robot(args: &Arguments) -> Result<Robot> {
     }
 }
 
+/// Returns the model file of an export that needs one.
+pub(super) fn model_file(args: &Arguments) -> Result<&PathBuf> {
+    args.model.as_ref().ok_or_else(|| Error::setting(NO_MODEL))
+}
+
 /// Opens the model over the recordings; `tool` names what it is for.
 pub(super) fn open(args: &Arguments, tool: &str) -> Result<OpenedCheck> {
-    let model = args.model.as_ref().ok_or_else(|| Error::setting(NO_MODEL))?;
+    let model = model_file(args)?;
     let no_input = || {
         Error::setting(format!(
             "an export to {tool} needs the recorded input; name the recordings with --data and the \

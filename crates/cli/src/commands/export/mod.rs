@@ -8,12 +8,13 @@ use std::path::PathBuf;
 use reachtube::export::robot::{mjcf_files, updated_urdf_files, urdf_files};
 use reachtube::export::{ExportCase, ExportError, ExportFile, InputForm, Meaning, Tool, files};
 use reachtube::finding::Table;
+use reachtube::tracking::TrackingModel;
 use reachtube::{Robot, write};
 use schemars::JsonSchema;
 use serde::Serialize;
 
 pub(crate) use arguments::Arguments;
-use arguments::{Target, load_robot, open, refuse_unused, write_all};
+use arguments::{Target, load_robot, model_file, open, refuse_unused, write_all};
 pub(crate) use shield::ShieldExport;
 
 use crate::error::{Error, Result};
@@ -91,6 +92,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         Target::Mjcf => robot(args, &mjcf_files, json),
         Target::Urdf => robot(args, &updated, json),
         Target::SaraShield => shield::run(args, json),
+        Target::Ros2Control => tolerances(args, json),
         Target::Tool(tool) => model(args, tool, json),
     }
 }
@@ -110,6 +112,27 @@ fn robot(
     let result = RobotExport { robot: robot.name(), files: &names };
     let text = || format!("exported {}:\n  {}\n", robot.name(), names.join("\n  "));
     output::show(json, &result, text)?;
+    Ok(Outcome::Done)
+}
+
+/// The result of `export` of tolerances.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct TolerancesExport<'a> {
+    /// Names of the joints.
+    joints: Vec<&'a str>,
+    /// Path of the file.
+    file: String,
+}
+
+/// Writes the tolerances of a model of an arm under its controller.
+fn tolerances(args: &Arguments, json: bool) -> Result<Outcome> {
+    let path = args.out.join("constraints.yaml");
+    write::try_at(&path)?;
+    let model = TrackingModel::open(model_file(args)?)?;
+    output::write_all(std::iter::once((&path, model.ros2_control().as_bytes())))?;
+    let joints = model.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let result = TolerancesExport { joints, file: path.display().to_string() };
+    output::show(json, &result, || format!("exported to ros2_control:\n  {}\n", path.display()))?;
     Ok(Outcome::Done)
 }
 
