@@ -1,5 +1,6 @@
 use rayon::prelude::*;
 use reachtube_finding::{Finding, Severity};
+use reachtube_recordings::ColumnSettings;
 use reachtube_scalar::rounding::{add_up, sub_up};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -95,6 +96,7 @@ pub fn make(recordings: &[TrackedRun]) -> Result<MadeModel> {
         factor: chosen.factor,
         left_out: left_out(&motions, &rows, chosen, rows.inside(chosen)?),
         recordings: recorded.collect(),
+        columns: ColumnSettings::default(),
         sha256: String::new(),
     };
     hold_all(&mut model, &used);

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use reachtube_files::{TOOL, hex, json, read_text};
+use reachtube_recordings::{Axis, ColumnSettings};
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_down, mul_down};
 use schemars::JsonSchema;
@@ -45,6 +46,9 @@ pub struct TrackingModel {
     pub left_out: NeedsOfMotions,
     /// The recordings.
     pub recordings: Vec<RunOfModel>,
+    /// Columns whose names do not tell, with which other logs are read too.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub columns: ColumnSettings,
     /// SHA-256 of the rest of the file's content, so that a change is noticed.
     pub sha256: String,
 }
@@ -174,6 +178,25 @@ impl TrackingModel {
         self.left_out.motions >= 3
     }
 
+    /// Returns the model of recordings that were read with some columns.
+    #[must_use]
+    pub fn with_columns(self, columns: ColumnSettings) -> Self {
+        Self { columns, ..self }.sealed()
+    }
+
+    /// Returns the joints, by which the columns of other logs are found.
+    #[must_use]
+    pub fn axes(&self) -> Vec<Axis> {
+        let axis = |joint: &JointTracking| Axis {
+            name: joint.name.clone(),
+            is_revolute: joint.unit == "rad",
+            units: if joint.unit == "rad" { ["rad", "rad/s", "N m"] } else { ["m", "m/s", "N"] },
+            position_limits: None,
+            velocity_limit: None,
+        };
+        self.joints.iter().map(axis).collect()
+    }
+
     /// Reads the text of a model file. Errors name the file `origin`.
     ///
     /// # Errors
@@ -232,6 +255,10 @@ impl TrackingModel {
         let unsealed = Self { sha256: String::new(), ..self.clone() };
         hex(&Sha256::digest(serde_json::to_vec(&unsealed).expect("a model has string keys")))
     }
+}
+
+fn is_default(columns: &ColumnSettings) -> bool {
+    *columns == ColumnSettings::default()
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {

@@ -28,8 +28,8 @@ impl MadeModel {
         };
         let samples: usize = model.recordings.iter().map(|of| of.samples - of.set_aside).sum();
         format!(
-            "{word}: the arm follows its command within {}, the mean of {}; {} of {}, each proved \
-             with directed rounding",
+            "{word}: the arm stays within {} of its nominal position, the mean of {}; {} of {}, \
+             each proved with directed rounding",
             milli(model.mean_half_width(), model.unit()),
             counted(model.joints.len(), "joint"),
             counted(samples, "sample"),
@@ -53,15 +53,9 @@ impl MadeModel {
             ..Summary::default()
         };
         summary.fact("left out", model.left_out_words());
-        let width = |of: &TriedFamily| {
-            let grows = if of.grows { ", growing with the speed" } else { "" };
-            format!("{}{grows} {}", of.depends_on, milli(of.mean_half_width, model.unit()))
-        };
-        let chosen = &self.families[self.chosen];
-        let others = self.families.iter().filter(|of| *of != chosen);
-        let next = others.min_by(|a, b| a.mean_half_width.total_cmp(&b.mean_half_width));
-        let tried: Vec<String> = std::iter::once(chosen).chain(next).map(width).collect();
-        summary.fact("mean half-width with", tried.join("; with "));
+        let TriedFamily { depends_on, grows, .. } = &self.families[self.chosen];
+        let grows = if *grows { "; the sets grow with the speed" } else { "" };
+        summary.fact("nominal error", format!("{depends_on}{grows}"));
         summary.fact("new motions", model.next_motion());
         summary.fact("holds", HOLDS);
         summary
@@ -80,8 +74,8 @@ impl TrackingModel {
         let Some(furthest) = left_out.furthest.as_ref().filter(|_| self.has_motions()) else {
             return "nothing: that needs 3 motions at least".into();
         };
-        let factor = significant(self.factor, 3);
-        let needed = format!("{furthest} needs the most, {factor} times the smallest sets");
+        let factor = self.factor;
+        let needed = format!("{furthest} needs the most, {factor:.2} times the smallest sets");
         match left_out.inside {
             _ if left_out.calibrated.is_some() => format!("every second recording; {needed}"),
             Some(inside) => format!(

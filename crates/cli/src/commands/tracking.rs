@@ -58,7 +58,8 @@ pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
     let (recordings, notes) = reading.read(args.data)?;
     output::notes(&notes);
     let bar = Progress::of("making a model");
-    let made = make(&recordings)?;
+    let mut made = make(&recordings)?;
+    made.model = made.model.with_columns(args.columns.clone());
     drop(bar);
     write::atomically(&path, |out| out.write_all(made.model.to_json().as_bytes()))?;
     let outcome = match (made.model.verified, made.is_useful()) {
@@ -91,8 +92,8 @@ pub(crate) fn check(args: &ModelArguments, json: bool) -> Result<Outcome> {
         return Err(Error::setting(NO_TORQUES));
     }
     let model = TrackingModel::open(model)?;
-    let columns = ColumnSettings::default();
-    let reading = Reading { axes: None, columns: &columns, until: data.until };
+    let axes = model.axes();
+    let reading = Reading { axes: Some(&axes), columns: &model.columns, until: data.until };
     let (recordings, notes) = reading.read(&[PathBuf::from(&data.data)])?;
     output::notes(&notes);
     let check = model.check(&recordings)?;
