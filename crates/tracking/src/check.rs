@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::model::TrackingModel;
 use crate::motion::{MotionRows, motions};
-use crate::recording::TrackedRun;
+use crate::recording::{TrackedRun, check};
 
 /// Beyond the recorded speed by no more than this part, a command counts as one like the recorded.
 const AS_FAST: f64 = 1e-9;
@@ -63,6 +63,7 @@ impl TrackingModel {
     ///
     /// [`Error::Joints`] for recordings of other joints than the model's.
     pub fn check(&self, recordings: &[TrackedRun]) -> Result<TrackingCheck> {
+        check(recordings)?;
         let own: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
         if let Some(other) = recordings.iter().find(|of| of.joints != own) {
             return Err(Error::Joints {

@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use rayon::prelude::*;
 use reachtube_finding::{Finding, Severity};
 use reachtube_recordings::ColumnSettings;
@@ -11,11 +13,8 @@ use crate::family::{FAMILIES, FittedFamily, TrackedRows};
 use crate::fit::TrackedSet;
 use crate::model::{JointTracking, NeedsOfMotions, RunOfModel, TrackingModel};
 use crate::motion::{MotionRows, motions};
-use crate::recording::TrackedRun;
+use crate::recording::{FEWEST_SAMPLES, TrackedRun, check};
 use crate::slip::slips;
-
-/// Fewest samples of a recording that are used.
-const FEWEST_ROWS: usize = 3;
 
 /// A model of an arm under its controller, and the families that were tried for it.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -62,17 +61,17 @@ impl MadeModel {
 ///
 /// # Errors
 ///
-/// Actual positions that are no measurement, recordings without a motion, and a program that cannot
-/// be solved.
-///
-/// # Panics
-///
-/// Panics without a recording.
+/// Recordings of different joints, actual positions that are no measurement, recordings without a
+/// motion, and a program that cannot be solved.
 pub fn make(recordings: &[TrackedRun]) -> Result<MadeModel> {
+    check(recordings)?;
     recordings.iter().try_for_each(TrackedRun::refuse_copy)?;
-    let (ranges, found): (Vec<_>, Vec<_>) = recordings.iter().map(TrackedRun::following).unzip();
+    let (mut ranges, found): (Vec<_>, Vec<_>) =
+        recordings.iter().map(TrackedRun::following).unzip();
+    let is_short = |range: &&mut Range<usize>| range.len() < FEWEST_SAMPLES;
+    ranges.iter_mut().filter(is_short).for_each(|range| range.end = range.start);
     let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
-    let parts = recordings.iter().zip(&ranges).filter(|(_, range)| range.len() >= FEWEST_ROWS);
+    let parts = recordings.iter().zip(&ranges).filter(|(_, range)| !range.is_empty());
     let used: Vec<TrackedRun> = parts.map(|(of, range)| of.only(range.clone())).collect();
     if used.iter().all(|of| (0..of.times.len()).all(|k| of.speed(k) == 0.0)) {
         return Err(Error::NoMotion);

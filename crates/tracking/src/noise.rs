@@ -6,6 +6,9 @@ const REST: f64 = 1e-5;
 /// A set at rest is at least this many robust standard deviations wide.
 const DEVIATIONS: f64 = 3.0;
 
+/// No set is narrower at rest than this, far below what any encoder resolves, rad or m.
+const LEAST: f64 = 1e-9;
+
 /// Fewest samples at rest that tell a noise.
 const FEWEST: usize = 100;
 
@@ -13,7 +16,7 @@ const FEWEST: usize = 100;
 const PER_MEDIAN: f64 = 1.4826;
 
 /// Returns three robust standard deviations of the noise of the actual position of a joint at rest,
-/// from second differences, whose variance is 6 times the noise's; 0 if it hardly rests.
+/// from second differences, whose variance is 6 times the noise's; 1e-9 if it hardly rests.
 pub(crate) fn at_rest(recordings: &[TrackedRun], joint: usize) -> f64 {
     let mut differences = Vec::new();
     for of in recordings {
@@ -27,9 +30,9 @@ pub(crate) fn at_rest(recordings: &[TrackedRun], joint: usize) -> f64 {
         }
     }
     if differences.len() < FEWEST {
-        return 0.0;
+        return LEAST;
     }
     let middle = differences.len() / 2;
     let median = *differences.select_nth_unstable_by(middle, f64::total_cmp).1;
-    DEVIATIONS * PER_MEDIAN * median / 6f64.sqrt()
+    (DEVIATIONS * PER_MEDIAN * median / 6f64.sqrt()).max(LEAST)
 }

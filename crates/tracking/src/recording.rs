@@ -7,6 +7,9 @@ use reachtube_recordings::{Axis, ColumnSettings, GapLimit, LoggedOptions, read_l
 use crate::basis::rates;
 use crate::error::{Error, Result};
 
+/// Fewest samples of a recording, which has an acceleration.
+pub(crate) const FEWEST_SAMPLES: usize = 3;
+
 /// Samples of the commanded and the actual positions of n joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackedRun {
@@ -57,7 +60,6 @@ impl Reading<'_> {
                     LogFiles::Container(path) => return Err(Error::Container { path }),
                 };
                 notes.extend(own);
-                same_joints(recordings.first(), &recording)?;
                 match recordings.iter().find(|other| other.sha256 == recording.sha256) {
                     None => recordings.push(recording),
                     Some(other) => {
@@ -67,7 +69,8 @@ impl Reading<'_> {
                 }
             }
         }
-        if recordings.is_empty() { Err(Error::NoData) } else { Ok((recordings, notes)) }
+        check(&recordings)?;
+        Ok((recordings, notes))
     }
 
     fn read_csv(&self, files: &[PathBuf]) -> Result<(TrackedRun, Vec<String>)> {
@@ -105,32 +108,31 @@ impl Reading<'_> {
             times: run.times,
             sha256: run.sha256,
         };
-        recording.check()?;
         Ok((recording, logged.notes))
     }
 }
 
-/// Refuses a recording of other joints than the first one's.
-fn same_joints(first: Option<&TrackedRun>, recording: &TrackedRun) -> Result<()> {
-    match first.filter(|first| first.joints != recording.joints) {
-        None => Ok(()),
-        Some(first) => Err(Error::Joints {
-            file: recording.file.clone(),
-            joints: recording.joints.clone(),
-            other: first.file.clone(),
-            others: first.joints.clone(),
-        }),
+/// Refuses no recordings, recordings of different joints, and one that is too short.
+pub(crate) fn check(recordings: &[TrackedRun]) -> Result<()> {
+    let first = recordings.first().ok_or(Error::NoData)?;
+    for recording in recordings {
+        let (file, samples) = (recording.file.clone(), recording.times.len());
+        if samples < FEWEST_SAMPLES {
+            return Err(Error::Short { file, samples });
+        }
+        if recording.joints != first.joints {
+            return Err(Error::Joints {
+                file,
+                joints: recording.joints.clone(),
+                other: first.file.clone(),
+                others: first.joints.clone(),
+            });
+        }
     }
+    Ok(())
 }
 
 impl TrackedRun {
-    fn check(&self) -> Result<()> {
-        match self.times.len() {
-            0..3 => Err(Error::Short { file: self.file.clone(), samples: self.times.len() }),
-            _ => Ok(()),
-        }
-    }
-
     /// Returns the number of joints n.
     #[must_use]
     pub fn joint_count(&self) -> usize {

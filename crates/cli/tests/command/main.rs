@@ -35,10 +35,13 @@ mod robot_logs;
 mod robots;
 mod schema;
 mod schunk;
+#[path = "../../../tracking/tests/tracking/servo.rs"]
+mod servo;
 mod short;
 mod stability;
 mod stop;
 mod terminal;
+mod tracking;
 mod verdicts;
 mod verify;
 mod verify_stops;

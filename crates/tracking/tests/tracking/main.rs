@@ -2,7 +2,6 @@
 
 mod cautions;
 mod common;
-mod probe;
 mod real_logs;
 mod second_way;
 mod servo;

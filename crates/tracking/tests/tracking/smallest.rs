@@ -63,9 +63,25 @@ fn the_set_of_a_joint_that_stands_is_as_wide_as_its_noise() {
     near(model.joints[1].radius, 1e-3, 1e-9);
 }
 
-/// Returns recordings of two joints that are late exactly, by the speed of the parabola through three
+/// A joint that is locked and logged as its command has no error. Its set holds it, in a check too.
+#[test]
+fn a_joint_without_an_error_is_inside() {
+    let swings = |k: usize| if k.is_multiple_of(2) { -2e-3 } else { 1e-3 };
+    let recordings = all(|k| [0.0, swings(k)]);
+    let model = made(&recordings).model;
+    assert!(model.verified && model.joints[0].radius < 1e-8, "{:?}", model.joints[0]);
+    near(model.joints[1].radius, 1.5e-3, 1e-9);
+    let check = model.check(&recordings).unwrap();
+    assert!(check.conformant && check.motions.iter().all(|of| of.needed.is_finite()), "{check:?}");
+    let mut moved = recordings[0].clone();
+    moved.actual[2 * 7] += 1e-6;
+    let check = model.check(&[moved]).unwrap();
+    assert_eq!((check.outside, check.joints[0].outside), (1, 1));
+}
+
+/// Returns recordings of two joints that are late exactly, by the speed of the parabola through 3
 /// commands.
-pub(crate) fn late() -> Vec<TrackedRun> {
+fn late() -> Vec<TrackedRun> {
     let late = |number: usize| {
         let mut of = standing(number, |_| [0.0; 2]);
         for (k, time) in of.times.iter().enumerate() {
@@ -89,9 +105,9 @@ fn an_exact_lag_needs_no_radius() {
     assert_eq!(made.families[made.chosen].depends_on, "an offset and a lag");
     assert!(made.model.verified);
     for (joint, lag) in made.model.joints.iter().zip(LAGS) {
-        assert!((joint.speed + lag).abs() < 1e-9, "{joint:?}");
-        assert!(joint.offset.abs() < 1e-9, "{joint:?}");
-        assert!(joint.half_width(joint.largest_speed) < 1e-9, "{joint:?}");
+        assert!((joint.speed + lag).abs() < 1e-7, "{joint:?}");
+        assert!(joint.offset.abs() < 1e-7, "{joint:?}");
+        assert!(joint.half_width(joint.largest_speed) < 1e-5 * joint.largest_error, "{joint:?}");
     }
     assert!(made.is_useful());
 }

@@ -1,0 +1,170 @@
+//! Models of an arm under its controller, from logs of commanded and actual positions.
+
+use crate::fixture::{Lab, Run};
+use crate::output_schema::fits;
+use crate::servo::log;
+
+const MODEL: &str = "model --data logs --out arm";
+
+/// Writes logs of the servo with the plans 1 to `count` into a folder, with errors times `factor`.
+fn write_logs(lab: &Lab, folder: &str, count: u64, factor: f64) {
+    std::fs::create_dir_all(lab.path(folder)).unwrap();
+    for number in 1..=count {
+        let log = log(number);
+        let mut text = String::from("timestamp,target_q_0,target_q_1,actual_q_0,actual_q_1\n");
+        for (k, time) in log.times.iter().enumerate() {
+            let [r, y] = [log.command[k], log.actual[k]];
+            let actual = [0, 1].map(|joint| r[joint] + factor * (y[joint] - r[joint]));
+            text += &format!("{time},{},{},{},{}\n", r[0], r[1], actual[0], actual[1]);
+        }
+        lab.write(&format!("{folder}/motion_{number}.csv"), text);
+    }
+}
+
+fn lab(count: u64) -> Lab {
+    let lab = Lab::new();
+    write_logs(&lab, "logs", count, 1.0);
+    lab
+}
+
+fn words(run: &Run) -> String {
+    run.stdout.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn a_model_of_good_logs_is_useful() {
+    let lab = lab(6);
+    let run = lab.run(MODEL).exits(0);
+    let said = words(&run);
+    assert!(run.stdout.starts_with("conformant and useful: "), "{}", run.stdout);
+    for part in ["joint late by half-width", "joint_0 9.", "joint_1 14 ms", "new motions: "] {
+        assert!(said.contains(part), "{part} is not in\n{}", run.stdout);
+    }
+    assert!(said.contains("wrote: arm/model.json"), "{}", run.stdout);
+    assert!(said.contains("`reachtube check --model arm/model.json"), "{}", run.stdout);
+    assert!(run.stdout.lines().count() <= 18, "{}", run.stdout);
+    let text = lab.read("arm/model.json");
+    let answer = lab.run(&format!("{MODEL} --json")).exits(0).json();
+    fits("model_tracking", &answer);
+    assert_eq!((&answer["useful"], &answer["findings"]), (&true.into(), &serde_json::json!([])));
+    let number = |name: &str| answer[name].as_f64().unwrap();
+    assert!(number("mean_half_width") < number("mean_largest_error"), "{answer}");
+    let late = answer["model"]["joints"][1]["speed"].as_f64().unwrap();
+    assert!((late + 14e-3).abs() < 1e-4, "{late}");
+    // The same logs give the same file, which is the model that was printed.
+    assert_eq!(lab.read("arm/model.json"), text);
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), answer["model"]);
+}
+
+#[test]
+fn a_check_holds_the_same_logs_and_names_what_leaves() {
+    let lab = lab(6);
+    lab.run(MODEL).exits(0);
+    let check = |folder: &str| format!("check --model arm/model.json --data {folder}");
+    let run = lab.run(&check("logs")).exits(0);
+    assert!(run.stdout.starts_with("conformant: 0 of 7200 positions"), "{}", run.stdout);
+    let answer = lab.run(&format!("{} --json", check("logs"))).exits(0).json();
+    fits("check_tracking", &answer);
+    assert_eq!((&answer["conformant"], &answer["outside"]), (&true.into(), &0.into()));
+    // The errors of one log are five times as large.
+    write_logs(&lab, "far", 1, 5.0);
+    let run = lab.run(&check("far")).exits(1);
+    assert!(run.stdout.starts_with("not conformant: "), "{}", run.stdout);
+    let answer = lab.run(&format!("{} --json", check("far"))).exits(1).json();
+    fits("check_tracking", &answer);
+    let motion = &answer["motions"][0];
+    assert_eq!((&answer["conformant"], &motion["name"]), (&false.into(), &"motion_1".into()));
+    let joint = motion["joint"].as_str().unwrap();
+    let own = answer["joints"].as_array().unwrap().iter().find(|of| of["name"] == joint).unwrap();
+    assert!(own["outside"].as_u64().unwrap() > 0 && own["needed"] == motion["needed"], "{answer}");
+    assert!(motion["needed"].as_f64().unwrap() > 2.0, "{motion}");
+    let said = words(&run);
+    let row = said.split("at motion_1 ").nth(1).unwrap();
+    let time = format!("{:.3} s", motion["time"].as_f64().unwrap());
+    assert!(row.contains(&format!(" times {joint} {time}")), "{}", run.stdout);
+}
+
+#[test]
+fn fewer_than_3_motions_are_vacuous() {
+    let lab = lab(2);
+    let run = lab.run(MODEL).exits(3);
+    let said = words(&run);
+    assert!(said.contains("describes these recordings only"), "{}", run.stdout);
+    assert!(said.contains("With fewer than 3 motions"), "{}", run.stdout);
+    let answer = lab.run(&format!("{MODEL} --json")).exits(3).json();
+    fits("model_tracking", &answer);
+    assert_eq!(answer["findings"][0]["code"], "few-motions");
+    lab.run("check --model arm/model.json --data logs").exits(3);
+}
+
+#[test]
+fn logs_that_are_no_measurement_are_refused() {
+    let lab = lab(2);
+    lab.edit("logs/motion_2.csv", |lines| {
+        for k in (2..lines.len()).rev() {
+            let before: Vec<String> = lines[k - 1].split(',').map(String::from).collect();
+            let own: Vec<&str> = lines[k].split(',').collect();
+            lines[k] = [own[0], own[1], own[2], &before[1], &before[2]].join(",");
+        }
+    });
+    lab.run(MODEL).fails_with_last(&["logs/motion_2.csv", "1 samples before", "no measurement"]);
+    assert!(!lab.path("arm/model.json").exists());
+}
+
+#[test]
+fn logs_without_a_command_are_refused_with_a_remedy() {
+    let lab = lab(1);
+    lab.edit("logs/motion_1.csv", |lines| lines[0] = "timestamp,a,b,actual_q_0,actual_q_1".into());
+    lab.run(MODEL).fails_with_last(&[
+        "logs/motion_1.csv",
+        "no column is a commanded position",
+        "log the commanded positions too, such as target_q_0",
+    ]);
+    let run = lab.run(&format!("{MODEL} --json")).exits(2);
+    fits("error", &serde_json::from_str(run.stderr.lines().last().unwrap()).unwrap());
+    // The columns are named by the option that the remedy gives.
+    lab.edit("logs/motion_1.csv", |lines| lines[0] = "timestamp,a1,a2,b1,b2".into());
+    let named = lab.run(&format!("{MODEL} --columns r=a{{}},q=b{{}}")).exits(3);
+    assert!(words(&named).contains("describes these recordings only"), "{named:?}");
+    // A check reads the columns that the model names.
+    let check = lab.run("check --model arm/model.json --data logs").exits(3);
+    assert!(check.stdout.starts_with("conformant: 0 of 1200 positions"), "{check:?}");
+}
+
+#[test]
+fn options_of_torques_need_torques() {
+    let lab = lab(3);
+    for option in ["--fit viscous", "--horizon 0.3", "--held-out motion_1", "--gains 1,1"] {
+        lab.run(&format!("{MODEL} {option}")).fails_with(&["--torque"]);
+    }
+    assert!(!lab.path("arm").exists());
+    lab.run(MODEL).exits(0);
+    for option in ["--torque motor", "--suites A", "--notion hull", "--max-gap 1"] {
+        let check = format!("check --model arm/model.json --data logs {option}");
+        lab.run(&check).fails_with(&["under its controller", "leave --torque"]);
+    }
+}
+
+#[test]
+fn a_model_of_others_is_overwritten_with_force_only() {
+    let lab = lab(3);
+    std::fs::create_dir(lab.path("arm")).unwrap();
+    lab.write("arm/model.json", "mine\n");
+    lab.run(MODEL).fails_with(&["arm/model.json: a file of this name exists"]);
+    assert_eq!(lab.read("arm/model.json"), "mine\n");
+    lab.run(&format!("{MODEL} --force")).exits(0);
+    assert!(lab.read("arm/model.json").contains("reachtube-tracking-model"));
+    // An own file is replaced.
+    lab.run(MODEL).exits(0);
+}
+
+#[test]
+fn a_changed_model_is_refused() {
+    let lab = lab(3);
+    lab.run(MODEL).exits(0);
+    let mut model: serde_json::Value = serde_json::from_str(&lab.read("arm/model.json")).unwrap();
+    model["joints"][0]["radius"] = 1.0.into();
+    lab.write("arm/model.json", model.to_string());
+    let check = "check --model arm/model.json --data logs";
+    lab.run(check).fails_with(&["arm/model.json", "was changed after it was written"]);
+}
