@@ -54,7 +54,10 @@ impl TrackedRun {
         let mut sorted = errors.clone();
         sorted.sort_by(f64::total_cmp);
         let usual = sorted[samples * 9 / 10];
-        if errors[0] >= OFF * usual && usual > 0.0 {
+        let fastest = (0..samples).map(|k| self.speed(k)).fold(0.0, f64::max);
+        // A log may begin in the middle of a motion, with the lag of it.
+        let is_slow = self.speed(0) <= GOES_ON * fastest;
+        if is_slow && errors[0] >= OFF * usual && usual > 0.0 {
             // Thrice as long, an error that decays is as small beside the usual one again.
             let usual_at = errors.iter().position(|error| *error <= usual).unwrap_or(samples);
             range.start = (3 * usual_at).min(samples);

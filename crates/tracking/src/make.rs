@@ -1,3 +1,4 @@
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -143,7 +144,8 @@ fn left_out(
     chosen: &FittedFamily,
     inside: Option<usize>,
 ) -> NeedsOfMotions {
-    let kept = rows.is_kept.iter().filter(|is_kept| **is_kept).count();
+    let of_kept = motions.iter().zip(&rows.is_kept).filter(|(_, is_kept)| **is_kept);
+    let kept = of_kept.map(|(motion, _)| motion.recording).collect::<BTreeSet<_>>().len();
     let seen = motions.iter().zip(&rows.is_kept);
     let needed = seen.filter(|(_, is_kept)| kept == 0 || **is_kept).zip(&chosen.needed);
     let furthest = needed.max_by(|(_, a), (_, b)| a.total_cmp(b));

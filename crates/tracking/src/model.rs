@@ -87,8 +87,8 @@ pub struct JointTracking {
 pub struct NeedsOfMotions {
     /// The number of motions.
     pub motions: usize,
-    /// The number of motions that neither fit nor choice have seen and that the factor comes from;
-    /// `None` if each motion was left out in turn.
+    /// The number of recordings that neither fit nor choice have seen and that the factor comes
+    /// from; `None` if each motion was left out in turn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibrated: Option<usize>,
     /// The motion that needed the largest factor.

@@ -145,8 +145,7 @@ impl TrackedRun {
         T: Copy + From<f64> + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
     {
         let n = self.joint_count();
-        let at = |k: usize| (T::from(self.times[k]), T::from(self.command[k * n + joint]));
-        rates(k, self.times.len(), at)
+        rates(k, &self.times, |k| T::from(self.command[k * n + joint]))
     }
 
     /// Returns the highest speed of the command over the joints at sample `k`, rad/s.

@@ -93,11 +93,11 @@ impl TrackingModel {
         let left_out = &self.left_out;
         match left_out.calibrated {
             Some(count) => format!(
-                "at most 1 in {} leaves the sets, on average over draws of motions that are alike",
+                "at most 1 in {} recordings leaves the sets, on average, if they are drawn alike",
                 count + 1
             ),
             None if self.has_motions() => format!(
-                "no guarantee; if motions are alike, about 1 in {} leaves the sets",
+                "no guarantee; if motions are alike and independent, about 1 in {} leaves the sets",
                 left_out.motions + 1
             ),
             None => "no guarantee".into(),

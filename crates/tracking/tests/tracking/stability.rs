@@ -42,6 +42,18 @@ fn fewer_samples_change_little() {
     is_like(&changed(&|of| only(of, (1..600).step_by(2))), &whole, 0.15);
 }
 
+/// Speeds are not those across a gap, and a log that begins in a motion is not off its command.
+#[test]
+fn lost_samples_change_little() {
+    let recordings = servo(6);
+    let whole = made(&recordings);
+    let lost = |of: &TrackedRun| only(of, (200..600).filter(|k| !(300..330).contains(k)));
+    let changed = made(&recordings.iter().map(lost).collect::<Vec<_>>());
+    assert_eq!(changed.findings, []);
+    assert!(changed.model.recordings.iter().all(|of| (of.samples, of.set_aside) == (370, 0)));
+    is_like(&changed, &whole, 0.15);
+}
+
 #[test]
 fn a_nanosecond_changes_little() {
     let recordings = servo(6);
