@@ -244,7 +244,8 @@ impl Finder<'_> {
         let header = self.header();
         let problem = format!("no column is a commanded position; the header has {header}");
         let remedy = "log the commanded positions too, such as target_q_0, or name their columns: \
-                      --columns r=NAME_{}; to model an arm by its torques, give --torque";
+                      --columns r=NAME_{}; to model an arm by its torques, say --torque motor, link \
+                      or compensated";
         Err(self.defect(DefectKind::Header, problem, remedy))
     }
 
