@@ -244,8 +244,8 @@ impl Finder<'_> {
         let header = self.header();
         let problem = format!("no column is a commanded position; the header has {header}");
         let remedy = "log the commanded positions too, such as target_q_0, or name their columns: \
-                      --columns r=NAME_{}; to model an arm by its torques, say --torque motor, link \
-                      or compensated";
+                      --columns r=NAME_{}; to model an arm by its torques, say --torque motor, \
+                      link or compensated";
         Err(self.defect(DefectKind::Header, problem, remedy))
     }
 
