@@ -11,12 +11,9 @@ pub(crate) const TERMS: usize = 4;
 /// the direction grows in proportion to the speed.
 const SLOW: f64 = 0.02;
 
-/// A step is a gap if it is longer than this multiple of the other step at a sample.
-const GAP: f64 = 5.0;
-
 /// Returns ṙ and r̈ of a command at sample `k` of 3 or more: of the parabola through the sample and
-/// its neighbours. ṙ is the mean speed of one step at an end, and where the other step is a gap;
-/// r̈ at an end is the neighbour's.
+/// its neighbours, of which the nearer counts more. At an end, ṙ is the mean speed of the step, and
+/// r̈ is the neighbour's.
 pub(crate) fn rates<T>(k: usize, times: &[f64], command: impl Fn(usize) -> T) -> [T; 2]
 where
     T: Copy + From<f64> + Add<Output = T> + Sub<Output = T> + Mul<Output = T> + Div<Output = T>,
@@ -26,12 +23,9 @@ where
     let [(t0, r0), (t1, r1), (t2, r2)] = [middle - 1, middle, middle + 1].map(at);
     let [before, after] = [(r1 - r0) / (t1 - t0), (r2 - r1) / (t2 - t1)];
     let acceleration = T::from(2.0) * (after - before) / (t2 - t0);
-    let steps = [times[middle] - times[middle - 1], times[middle + 1] - times[middle]];
     let speed = match k {
         0 => before,
         _ if k == times.len() - 1 => after,
-        _ if steps[0] > GAP * steps[1] => after,
-        _ if steps[1] > GAP * steps[0] => before,
         _ => (before * (t2 - t1) + after * (t1 - t0)) / (t2 - t0),
     };
     [speed, acceleration]
@@ -62,7 +56,6 @@ mod tests {
 
     #[test]
     fn rates_are_exact_for_parabolas_on_any_grid() {
-        // The last step but one is a gap.
         let times = [0.0, 0.1, 0.25, 0.3, 0.5, 0.55, 1.0, 1.05];
         let r = |t: f64| 1.0 - 2.0 * t + 3.0 * t * t;
         let slope = |a: usize, b: usize| (r(times[b]) - r(times[a])) / (times[b] - times[a]);
@@ -70,8 +63,7 @@ mod tests {
             let [speed, acceleration] = rates(k, &times, |k| r(times[k]));
             let expected = match k {
                 0 => slope(0, 1),
-                5 => slope(4, 5),
-                6 | 7 => slope(6, 7),
+                7 => slope(6, 7),
                 k => 6.0 * times[k] - 2.0,
             };
             assert!((speed - expected).abs() < 1e-12 && (acceleration - 6.0).abs() < 1e-12, "{k}");

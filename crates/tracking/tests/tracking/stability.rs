@@ -42,7 +42,7 @@ fn fewer_samples_change_little() {
     is_like(&changed(&|of| only(of, (1..600).step_by(2))), &whole, 0.15);
 }
 
-/// The speed at either end of a gap is not the one across it.
+/// At either end of a gap, the nearer neighbour decides the speed.
 #[test]
 fn lost_samples_change_little() {
     let recordings = servo(6);
