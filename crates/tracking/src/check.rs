@@ -15,9 +15,9 @@ const AS_FAST: f64 = 1e-9;
 pub struct TrackingCheck {
     /// Whether every sample of all recordings is proved to lie in the sets.
     pub conformant: bool,
-    /// The number of samples.
-    pub samples: usize,
-    /// The number of samples that are not proved to lie in the sets.
+    /// The number of positions: one for each sample and joint.
+    pub positions: usize,
+    /// The number of positions that are not proved to lie in the sets.
     pub outside: usize,
     /// The motions, each with the part of the sets that it needs.
     pub motions: Vec<CheckedMotion>,
@@ -112,8 +112,8 @@ impl TrackingModel {
         });
         let joints: Vec<CheckedJoint> = joints.collect();
         let outside = joints.iter().map(|joint| joint.outside).sum();
-        let samples = recordings.iter().map(|of| of.times.len() * of.joint_count()).sum();
+        let positions = recordings.iter().map(|of| of.times.len() * of.joint_count()).sum();
         let motions = checked_motions.collect();
-        Ok(TrackingCheck { conformant: outside == 0, samples, outside, motions, joints })
+        Ok(TrackingCheck { conformant: outside == 0, positions, outside, motions, joints })
     }
 }

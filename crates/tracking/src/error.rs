@@ -1,5 +1,6 @@
 use std::path::PathBuf;
 
+use reachtube_scalar::number::counted;
 use thiserror::Error;
 
 /// Why no model could be made of commanded and actual positions, or compared with others.
@@ -58,8 +59,9 @@ pub enum Error {
     NoMotion,
     /// The actual positions are commands of earlier samples.
     #[error(
-        "{}: in {copied} samples, the actual positions are the commanded ones of {before} samples \
-         before, exactly: they are no measurement; log what the encoders measure", file.display()
+        "{}: in {copied} samples, the actual positions are the commanded ones of {} before, \
+         exactly: they are no measurement; log what the encoders measure",
+        file.display(), counted(*before, "sample")
     )]
     NoMeasurement {
         /// The recording.

@@ -6,7 +6,7 @@ use microlp::{ComparisonOp, OptimizationDirection, Problem, Variable};
 use crate::basis::TERMS;
 use crate::error::{Error, Result};
 
-/// JointErrors are added until none is violated by more than this part of the set.
+/// Rows are added until none is violated by more than this part of the set.
 const TOLERANCE: f64 = 1e-6;
 
 /// A joint whose command spans less than this stands still, and has no lag, rad or m.

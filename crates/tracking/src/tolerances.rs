@@ -9,22 +9,22 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 use crate::model::{JointTracking, TrackingModel};
 
 impl JointTracking {
-    /// Returns the largest |y - r| that the model allows at rest, and for any command up to the
-    /// recorded speed and acceleration, rad.
+    /// Returns the largest |y - r| that the model allows where a command has come to rest, with any
+    /// recorded acceleration, and for any command up to the recorded speed and acceleration, rad.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
     #[must_use]
     pub fn largest_deviations(&self) -> [f64; 2] {
-        let at_rest = add_up(self.offset.abs(), self.radius);
+        let product = |(factor, largest): (f64, f64)| mul_up(factor.abs(), largest);
+        let accelerated = product((self.acceleration, self.largest_acceleration));
+        let at_rest = add_up(add_up(self.offset.abs(), self.radius), accelerated);
         let terms = [
             (self.speed, self.largest_speed),
             (self.radius_per_speed, self.largest_speed),
-            (self.acceleration, self.largest_acceleration),
             (self.direction, 1.0),
         ];
-        let product = |(factor, largest): (f64, f64)| mul_up(factor.abs(), largest);
         [at_rest, terms.into_iter().map(product).fold(at_rest, add_up)]
     }
 }

@@ -1,7 +1,8 @@
 //! Answers on a few lines.
 
 use reachtube_finding::{Finding, Severity, Summary, Table};
-use reachtube_scalar::number::{counted, significant, two_digits_up};
+use reachtube_scalar::number::{counted, outward, significant, two_digits_up};
+use reachtube_scalar::rounding::mul_up;
 
 use crate::check::TrackingCheck;
 use crate::make::{MadeModel, TriedFamily};
@@ -26,13 +27,17 @@ impl MadeModel {
             (true, false) if model.has_motions() => "conformant, but vacuous",
             (true, false) => "conformant, but it describes these recordings only",
         };
-        let samples: usize = model.recordings.iter().map(|of| of.samples - of.set_aside).sum();
+        let all: usize = model.recordings.iter().map(|of| of.samples).sum();
+        let aside: usize = model.recordings.iter().map(|of| of.set_aside).sum();
+        let of_all = if aside > 0 { format!("{} of {all}", all - aside) } else { all.to_string() };
+        let widest = |of: &JointTracking| of.half_width(of.largest_speed);
+        let widest = model.joints.iter().map(|of| (widest(of), &of.unit));
+        let (width, unit) = widest.max_by(|a, b| a.0.total_cmp(&b.0)).expect("a joint");
         format!(
-            "{word}: the arm stays within {} of its nominal position, the mean of {}; {} of {}, \
-             each proved with directed rounding",
-            milli(model.mean_half_width(), model.unit()),
-            counted(model.joints.len(), "joint"),
-            counted(samples, "sample"),
+            "{word}: each joint stays within {} of its nominal position, {} on average; {of_all} \
+             samples of {}, each proved with directed rounding",
+            width_up(width, unit),
+            width_up(model.mean_half_width(), unit),
             counted(model.left_out.motions, "motion"),
         )
     }
@@ -63,11 +68,6 @@ impl MadeModel {
 }
 
 impl TrackingModel {
-    /// Returns the unit that all joints share, or the first one's.
-    pub(crate) fn unit(&self) -> &str {
-        &self.joints[0].unit
-    }
-
     /// Returns what motions that were left out need, in words.
     fn left_out_words(&self) -> String {
         let left_out = &self.left_out;
@@ -112,8 +112,8 @@ fn table(model: &TrackingModel) -> Table {
         vec![
             joint.name.clone(),
             late,
-            milli(joint.half_width(0.0), &joint.unit),
-            milli(joint.half_width(joint.largest_speed), &joint.unit),
+            width_up(joint.half_width(0.0), &joint.unit),
+            width_up(joint.half_width(joint.largest_speed), &joint.unit),
             format!("{} {}/s", significant(joint.largest_speed, 2), joint.unit),
             milli(joint.without_model(), &joint.unit),
         ]
@@ -138,7 +138,7 @@ impl TrackingCheck {
         let verdict = format!(
             "{word}: {} of {} positions outside the sets; {inside} of {} inside",
             self.outside,
-            self.samples,
+            self.positions,
             counted(self.motions.len(), "motion"),
         );
         let mut order: Vec<usize> = (0..self.motions.len()).collect();
@@ -178,7 +178,15 @@ impl TrackingCheck {
     }
 }
 
-/// Returns a number of a unit in thousandths of it, rounded up to three digits.
+/// Returns a number of a unit in thousandths of it, in three digits.
 fn milli(value: f64, unit: &str) -> String {
     format!("{} m{unit}", significant(1e3 * value, 3))
+}
+
+/// Returns a half-width in thousandths of its unit, rounded up to three digits.
+fn width_up(width: f64, unit: &str) -> String {
+    let size = mul_up(1e3, width);
+    let decimals = (2.0 - size.max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 6.0) as usize;
+    let [_, up] = outward([0.0, size], decimals);
+    format!("{up} m{unit}")
 }

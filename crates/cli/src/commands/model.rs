@@ -7,7 +7,7 @@ use reachtube::conform::Group;
 use reachtube::finding::{FrontEnd, Summary};
 use reachtube::page::{Assets, built_pages};
 use reachtube::pipeline::{Built, Choice, Choices, Error as PipelineError, build};
-use reachtube::recordings::Torque;
+use reachtube::recordings::{LogSettings, Torque};
 use reachtube::robot::{Lock, Robot};
 use reachtube::write;
 
@@ -95,8 +95,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 
 /// Makes a model of commanded and actual positions, without torques.
 fn under_controller(args: &Arguments, json: bool) -> Result<Outcome> {
-    let Arguments { horizon, held_out, gains, fit, .. } = args;
-    if horizon.is_some() || !(held_out.is_empty() && gains.is_empty() && fit.is_empty()) {
+    let Arguments { horizon, held_out, gains, fit, log, .. } = args;
+    let is_log = log.settings() != LogSettings::default();
+    let is_made = !(held_out.is_empty() && gains.is_empty() && fit.is_empty());
+    if horizon.is_some() || is_made || is_log {
         return Err(Error::setting(NO_TORQUE));
     }
     let of = TrackingArguments {

@@ -78,8 +78,8 @@ pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
     } else {
         let mut summary = made.summary();
         summary.fact("wrote", path.display().to_string());
-        summary.next =
-            Some(format!("`reachtube check --model {} --data OTHER-LOGS`", path.display()));
+        let check = format!("`reachtube check --model {} --data OTHER-LOGS`", path.display());
+        summary.next = made.is_useful().then_some(check);
         output::print_verdict(&summary.to_string(), &outcome)?;
     }
     Ok(outcome)

@@ -107,7 +107,7 @@ fn logs_that_are_no_measurement_are_refused() {
             lines[k] = [own[0], own[1], own[2], &before[1], &before[2]].join(",");
         }
     });
-    lab.run(MODEL).fails_with_last(&["logs/motion_2.csv", "1 samples before", "no measurement"]);
+    lab.run(MODEL).fails_with_last(&["logs/motion_2.csv", "1 sample before", "no measurement"]);
     assert!(!lab.path("arm/model.json").exists());
 }
 

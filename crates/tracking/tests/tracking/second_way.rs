@@ -28,7 +28,7 @@ fn every_sample_is_inside_by_plain_arithmetic() {
     let model = made(&recordings).model;
     let own = needed(&model, &recordings);
     let check = model.check(&recordings).unwrap();
-    assert!(check.conformant && check.outside == 0 && check.samples == 6 * 600 * 2);
+    assert!(check.conformant && check.outside == 0 && check.positions == 6 * 600 * 2);
     for (own, joint) in own.into_iter().zip(&check.joints) {
         assert!(own <= 1.0 + 1e-9, "{own}");
         near(joint.needed, own, 1e-9);

@@ -42,7 +42,7 @@ fn samples_in_the_sets_are_inside_and_others_are_not() {
     let check = |part: f64| model.check(&[simulated(&model, &command, part)]).unwrap();
     for (part, outside) in [(0.5, 0), (0.999999, 0), (1.000001, 2 * SAMPLES)] {
         let check = check(part);
-        assert_eq!((check.samples, check.outside), (2 * SAMPLES, outside), "{part}");
+        assert_eq!((check.positions, check.outside), (2 * SAMPLES, outside), "{part}");
         assert_eq!(check.conformant, outside == 0);
         assert!(check.joints.iter().all(|joint| joint.too_fast.is_none()), "{check:?}");
         assert!(check.joints.iter().all(|joint| (joint.needed - part).abs() < 1e-8), "{check:?}");

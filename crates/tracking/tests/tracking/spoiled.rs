@@ -23,13 +23,13 @@ fn is_like_good_ones(made: &MadeModel) {
 
 #[test]
 fn copied_commands_are_refused() {
-    for before in [0, 1, 10] {
+    for (before, words) in [(0, "0 samples"), (1, "1 sample"), (10, "10 samples")] {
         let mut copy = log(6);
         let earlier = |k: usize| copy.command[k.saturating_sub(before)];
         copy.actual = (0..copy.times.len()).map(earlier).collect();
         let refused = make(&with_log("copy", &copy)).unwrap_err().to_string();
         assert!(refused.contains("logs/copy.csv: "), "{refused}");
-        assert!(refused.contains(&format!("of {before} samples before")), "{refused}");
+        assert!(refused.contains(&format!("of {words} before, exactly")), "{refused}");
         assert!(refused.contains("no measurement"), "{refused}");
     }
     // A measurement of a joint that follows exactly is near a copy, but none.
@@ -52,6 +52,8 @@ fn samples_after_a_stop_are_set_aside() {
     assert!([200, 199].contains(&set_aside(&made)), "{text}");
     assert!(made.findings[0].severity == Severity::Warning);
     assert!(made.findings[0].place.as_deref() == Some("step"));
+    // The first line says what was not looked at.
+    assert!(made.verdict().contains(&format!("{} of 3600 samples", 3600 - set_aside(&made))));
     is_like_good_ones(&made);
 }
 
