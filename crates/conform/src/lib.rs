@@ -28,6 +28,7 @@ pub mod model;
 pub mod monitor;
 pub mod next_motion;
 mod nominal;
+pub mod outputs;
 pub mod plausibility;
 mod program;
 mod progress;

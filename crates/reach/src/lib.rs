@@ -11,8 +11,8 @@ mod upward;
 pub use error::ReachError;
 pub use grid::TimeGrid;
 pub use linear::{
-    Disturbance, LinearSystem, Propagation, ReachSets, SampleGenerators, Solution, StepBounds,
-    StepRadii, Trajectory, step,
+    Disturbance, LinearSystem, OutputGains, Propagation, PropagationStep, ReachSets,
+    SampleGenerators, Solution, StepBounds, StepRadii, Trajectory, step,
 };
 pub use polynomial::{
     AutomaticFlowpipe, Flowpipe, FlowpipeMethod, FlowpipeOutcome, FlowpipeSettings,

@@ -76,8 +76,8 @@ pub use notes::{copies_note, run_notes};
 pub use pattern::matching;
 pub use preparation::Preparation;
 pub use reading::{
-    ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, Understood, csv_files,
-    group_files, parse_csv, read_csv, read_logged,
+    ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, NamedColumns, NamedRun,
+    Understood, csv_files, group_files, parse_csv, read_csv, read_logged, read_named,
 };
 pub use refusal::Refusal;
 pub use resample::{EvenSamples, Sample};

@@ -226,9 +226,7 @@ impl TrackingModel {
     /// Returns whether a file is a model of an arm under its controller.
     #[must_use]
     pub fn is_at(path: &Path) -> bool {
-        let text = read_text(path, "").unwrap_or_default();
-        let value = serde_json::from_str::<serde_json::Value>(&text).unwrap_or_default();
-        value["format"] == FORMAT
+        json::format_of(path).as_deref() == Some(FORMAT)
     }
 
     /// Opens a model file.

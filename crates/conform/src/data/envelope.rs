@@ -64,7 +64,7 @@ impl Envelope {
     /// # Guarantee
     ///
     /// Outer: exact comparisons, no rounding.
-    pub(crate) fn include_bounds<'a>(&mut self, run: u32, lower: &'a [f64], upper: &'a [f64]) {
+    pub fn include_bounds<'a>(&mut self, run: u32, lower: &'a [f64], upper: &'a [f64]) {
         self.extend(upper.len());
         let of_run = |values: &'a [f64]| values.iter().map(move |value| (*value, run));
         let (highest, lowest) = self.owned();
@@ -127,6 +127,21 @@ impl Envelope {
     /// Returns the lowest value at sample k in state i.
     pub fn lower(&self, k: usize, i: usize) -> f64 {
         self.lower[k * self.dimension + i]
+    }
+
+    /// Returns the envelope with each bound moved inward by `radius` of its sample and state,
+    /// rounded to nearest.
+    #[must_use]
+    pub fn narrowed(&self, radius: impl Fn(usize, usize) -> f64) -> Self {
+        self.map(|k, i, upper| upper - radius(k, i), |k, i, lower| lower + radius(k, i))
+    }
+
+    /// Returns the run that has the bound further from 0 at sample k in state i.
+    pub fn furthest_run(&self, k: usize, i: usize) -> u32 {
+        match self.upper(k, i) > -self.lower(k, i) {
+            true => self.upper_run(k, i),
+            false => self.lower_run(k, i),
+        }
     }
 
     pub(crate) fn upper_run(&self, k: usize, i: usize) -> u32 {

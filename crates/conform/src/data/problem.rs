@@ -86,7 +86,7 @@ impl Problem {
             source: source.as_ref(),
             options: read_options(&setup),
             drive: &**drive,
-            shape: Shape { states: dynamics.states(), inputs: dynamics.inputs() },
+            shape: Shape::of_states(dynamics.states(), dynamics.inputs()),
             nominal: settings.nominal,
             nominal_starts: &setup.nominal_starts,
             kept: &kept,
@@ -174,7 +174,7 @@ impl Problem {
     }
 
     pub(crate) fn shape(&self) -> Shape {
-        Shape { states: self.states(), inputs: self.inputs() }
+        Shape::of_states(self.states(), self.inputs())
     }
 
     /// Returns what the numbers of the model are.

@@ -151,7 +151,7 @@ impl FitTask<'_> {
             let (lower, upper) = (off(Envelope::lower), off(Envelope::upper));
             blocks[track.grid].envelope.include_bounds(t as u32, &lower, &upper);
         }
-        let shape = Shape { states, inputs: self.inputs() };
+        let shape = Shape::of_states(states, self.inputs());
         Program::new((self.settings, shape), &self.weights, blocks).with_limits(self.limits.clone())
     }
 

@@ -114,7 +114,8 @@ impl StepProgram<'_> {
     }
 
     fn layout(&self) -> Layout {
-        Layout::new(self.fit.settings, &self.program.cost, &self.program.noise_cost)
+        let Program { shape, cost, noise_cost, .. } = &self.program;
+        Layout::new(self.fit.settings, *shape, cost, noise_cost)
     }
 
     fn numbers_of(&self, unknowns: &[f64]) -> Vec<f64> {

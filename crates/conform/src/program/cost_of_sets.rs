@@ -16,7 +16,7 @@ impl Program<'_> {
     /// Returns the [cost](Self::cost) in mean steps. On uniform grids it is the sum over samples.
     pub(crate) fn cost_in_steps(&self, sets: &UncertaintySets) -> f64 {
         let radii = sets.initial_set.radius.iter().chain(&sets.input_set.radius);
-        let noise = (0..self.shape.states).map(|i| self.noise_cost[i] * sets.noise_radius(i));
+        let noise = (0..self.shape.outputs).map(|i| self.noise_cost[i] * sets.noise_radius(i));
         radii.zip(&self.cost).map(|(r, w)| r * w).sum::<f64>() + noise.sum::<f64>()
     }
 

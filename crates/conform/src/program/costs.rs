@@ -108,7 +108,7 @@ pub(super) fn cost(
     weights: &[f64],
 ) -> (Vec<f64>, Vec<f64>) {
     let radii = shape.radii();
-    let (mut cost, mut noise) = (vec![0.0; radii], vec![0.0; shape.states]);
+    let (mut cost, mut noise) = (vec![0.0; radii], vec![0.0; shape.outputs]);
     for (block, parts) in blocks.iter().zip(parts) {
         let samples = block.coefficients.chunks_exact(shape.entries());
         for (rows, part) in samples.zip(parts) {

@@ -45,7 +45,7 @@ pub(crate) struct Layout {
 impl Layout {
     /// Lays out the unknowns for radii of X0 and U of the cost `cost`, and noise radii of
     /// `noise_cost`.
-    pub(crate) fn new(settings: &Settings, cost: &[f64], noise_cost: &[f64]) -> Self {
+    pub(crate) fn new(settings: &Settings, shape: Shape, cost: &[f64], noise_cost: &[f64]) -> Self {
         let has_centres = settings.centre != Centre::Zero;
         let mut columns = if has_centres { cost.to_vec() } else { Vec::new() };
         columns.extend(cost);
@@ -56,8 +56,6 @@ impl Layout {
         // cost makes it 0.
         let largest = columns.iter().copied().fold(0.0, f64::max);
         columns.iter_mut().filter(|w| **w == 0.0).for_each(|w| *w = largest);
-        let states = noise_cost.len();
-        let shape = Shape { states, inputs: cost.len() - states };
         Self { shape, has_centres, cost: columns }
     }
 
@@ -173,7 +171,7 @@ impl Layout {
     }
 
     pub(crate) fn sets(&self, unknowns: &[f64], settings: &Settings) -> UncertaintySets {
-        let (Shape { states, .. }, centres) = (self.shape, self.centres());
+        let (Shape { states, outputs, .. }, centres) = (self.shape, self.centres());
         let width = self.shape.radii();
         let set = |from: usize, to: usize| {
             let radius: Vec<f64> =
@@ -185,7 +183,7 @@ impl Layout {
             }
             Hyperrectangle { centre, radius }
         };
-        let noise = |radius: Vec<f64>| Some(Hyperrectangle { centre: vec![0.0; states], radius });
+        let noise = |radius: Vec<f64>| Some(Hyperrectangle { centre: vec![0.0; outputs], radius });
         let noise_set = match &settings.noise {
             Noise::None => None,
             Noise::Fixed(given) => noise(given.clone()),

@@ -255,7 +255,7 @@ mod tests {
             let (times, scale) = ([0.0, 1.0].into(), [].into());
             let block = Block { times, coefficients, scale, envelope };
             let settings = Settings::default();
-            let shape = Shape { states: 2, inputs: 1 };
+            let shape = Shape::of_states(2, 1);
             let program = Program::new((&settings, shape), &[1.0; 2], vec![block]);
             let set = |centre, radius| Hyperrectangle { centre, radius };
             let sets = UncertaintySets {

@@ -21,7 +21,7 @@ impl Program<'_> {
         let mut sums = PaperSums { of_samples: 0.0, signed: 0.0, volume: 0.0 };
         for (b, (shares, parts)) in shares.iter().zip(&*self.parts).enumerate() {
             for (k, (share, part)) in shares.iter().zip(parts).enumerate() {
-                let rows = || (0..self.shape.states).map(|i| self.row(b, k, i));
+                let rows = || (0..self.shape.outputs).map(|i| self.row(b, k, i));
                 let edges = rows().map(|(centre, _)| 2.0 * dot(centre, unknowns.radius_of(b)));
                 sums.signed += share * edges.sum::<f64>();
                 let radii = || rows().map(|(_, radius)| radius.dot(&unknowns.radius));

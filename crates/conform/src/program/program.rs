@@ -54,7 +54,7 @@ const SCALINGS: usize = 4;
 #[derive(Clone)]
 pub(crate) struct Program<'a> {
     pub(super) settings: &'a Settings,
-    pub(super) shape: Shape,
+    pub(crate) shape: Shape,
     pub(super) blocks: Vec<Block>,
     /// For each block, the first one with the same coefficients.
     pub(super) groups: Arc<[usize]>,
@@ -133,7 +133,7 @@ impl<'a> Program<'a> {
 
     /// Returns the number of rows of the whole program, each side counted.
     pub(crate) fn rows(&self) -> usize {
-        let states = self.settings.states.rows(self.shape.states);
+        let states = self.settings.states.rows(self.shape.outputs);
         self.blocks.iter().map(|block| 2 * states * block.envelope.len()).sum()
     }
 
@@ -191,7 +191,7 @@ impl<'a> Program<'a> {
     }
 
     pub(crate) fn indices(&self, stride: usize) -> impl Iterator<Item = RowIndex> + '_ {
-        let states = self.settings.states.rows(self.shape.states);
+        let states = self.settings.states.rows(self.shape.outputs);
         self.blocks.iter().enumerate().flat_map(move |(b, block)| {
             (0..block.envelope.len()).step_by(stride).flat_map(move |k| {
                 (0..states).flat_map(move |i| Side::BOTH.map(|side| (b, k, i, side)))
@@ -202,7 +202,9 @@ impl<'a> Program<'a> {
     pub(crate) fn first_rows(&self) -> Vec<RowIndex> {
         let longest = self.blocks.iter().map(|block| block.envelope.len()).max().unwrap_or(0);
         let indices = self.indices((longest / 8).max(1));
-        indices.filter(|(b, ..)| self.groups[*b] == *b).collect()
+        // What no set reaches, such as an output before an input acts on it, is no row.
+        let is_reached = |(b, k, i, _): &RowIndex| self.row(*b, *k, *i).1.iter().any(|a| a > 0.0);
+        indices.filter(|(b, ..)| self.groups[*b] == *b).filter(is_reached).collect()
     }
 
     /// The entries of E_k and of R_k in row i.
@@ -234,7 +236,7 @@ impl<'a> Program<'a> {
             centre: join(|set| &set.centre),
             radius,
             scaled,
-            free_noise: (0..self.shape.states).map(noise).collect(),
+            free_noise: (0..self.shape.outputs).map(noise).collect(),
         }
     }
 
@@ -245,7 +247,7 @@ impl<'a> Program<'a> {
         indices: &[RowIndex],
         near: Option<&UncertaintySets>,
     ) -> Result<([UncertaintySets; 2], f64)> {
-        let layout = Layout::new(self.settings, &self.cost, &self.noise_cost);
+        let layout = Layout::new(self.settings, self.shape, &self.cost, &self.noise_cost);
         // Scale: each unknown as `units` says, each row so that its largest entry is 1.
         let unit = self.units(&layout, near);
         let largest_cost = layout.cost.iter().zip(&unit).map(|(w, u)| w * u).fold(0.0, f64::max);

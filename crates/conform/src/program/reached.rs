@@ -43,7 +43,7 @@ impl Program<'_> {
     }
 
     pub(crate) fn all_reached(&self, unknowns: &Unknowns) -> impl Iterator<Item = Reached> {
-        let states = self.settings.states.rows(self.shape.states);
+        let states = self.settings.states.rows(self.shape.outputs);
         let samples = self
             .blocks
             .iter()

@@ -76,7 +76,7 @@ mod tests {
         let (times, scale) = ([0.0, 1.0].into(), [].into());
         let block = Block { times, coefficients: Arc::new(coefficients), scale, envelope };
         let settings = Settings::default();
-        let shape = Shape { states: 2, inputs: 1 };
+        let shape = Shape::of_states(2, 1);
         let limits = Limits { noise: None, start: Some(vec![1e-9; 2]) };
         let program = Program::new((&settings, shape), &[1.0; 2], vec![block]).with_limits(limits);
         let set = |radius: Vec<f64>| Hyperrectangle { centre: vec![0.0; radius.len()], radius };

@@ -103,6 +103,9 @@ pub(crate) fn polished(optimum: &Optimum, matrix: &Triplets, bounds: &[f64]) -> 
         })
         .collect();
     let count = place.iter().flatten().count();
+    if count == 0 {
+        return x.clone();
+    }
     let mut rows = DMatrix::zeros(count, x.len());
     for ((&row, &column), &value) in matrix.rows.iter().zip(&matrix.columns).zip(&matrix.values) {
         if let Some(at) = place[row] {

@@ -55,7 +55,7 @@ impl Sensitivity {
         let mut slopes = system.slopes();
         let substeps = substeps(&mut *slopes, case, &start);
         let nominal = simulate(system, times, substeps, &start, &inputs)?;
-        let shape = Shape { states: 2 * n, inputs: n };
+        let shape = Shape::of_states(2 * n, n);
         let mut grown = StateSensitivities::new(shape, times.len(), disturbance);
         let stride = times.len().div_ceil(NODES).max(1);
         let mut found = Self {

@@ -59,7 +59,7 @@ pub(crate) struct Margin {
 
 impl SearchState {
     /// Returns the state before the first round: no uncertainty.
-    pub(crate) fn start(Shape { states, inputs }: Shape) -> Self {
+    pub(crate) fn start(Shape { states, inputs, .. }: Shape) -> Self {
         let (initial_set, input_set) = (Hyperrectangle::zero(states), Hyperrectangle::zero(inputs));
         let sets = UncertaintySets { initial_set, input_set, noise_set: None };
         Self {

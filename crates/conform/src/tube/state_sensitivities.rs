@@ -49,7 +49,7 @@ pub(super) struct StateSensitivities {
 
 impl StateSensitivities {
     pub(super) fn new(shape: Shape, samples: usize, disturbance: Disturbance) -> Self {
-        let Shape { states, inputs } = shape;
+        let Shape { states, inputs, .. } = shape;
         let blocks = samples.div_ceil(SIDE_BY_SIDE);
         Self {
             shape,
@@ -68,7 +68,7 @@ impl StateSensitivities {
 
     /// Advances by one step of length h (s) of δẋ = A δx + B δu.
     pub(super) fn advance(&mut self, a: &DMatrix<f64>, b: &DMatrix<f64>, h: f64) {
-        let Shape { states, inputs } = self.shape;
+        let Shape { states, inputs, .. } = self.shape;
         self.transition.update(a, b, h);
         let Transition { phi, gamma, .. } = &self.transition;
         self.start_before.copy_from_slice(&self.start);
@@ -105,7 +105,7 @@ impl StateSensitivities {
 
     /// Appends the rows of E_k and R_k.
     pub(super) fn write_into(&self, coefficients: &mut Vec<f64>) {
-        let Shape { states, inputs } = self.shape;
+        let Shape { states, inputs, .. } = self.shape;
         let rows = self.sums.each_ref().map(|sums| sums.chunks_exact(inputs));
         let [sums, totals] = rows;
         for ((start, sum), total) in self.start.chunks_exact(states).zip(sums).zip(totals) {
@@ -119,7 +119,7 @@ impl StateSensitivities {
     }
 
     pub(super) fn along(&self, l: &[f64]) -> DirectionRow {
-        let Shape { states, inputs } = self.shape;
+        let Shape { states, inputs, .. } = self.shape;
         let weighted = |column: &mut dyn Iterator<Item = f64>| -> f64 {
             l.iter().zip(column).map(|(l, x)| l * x).sum()
         };
@@ -141,7 +141,7 @@ impl StateSensitivities {
     }
 
     pub(super) fn node(&self, sample: usize) -> Node {
-        let Shape { states, inputs } = self.shape;
+        let Shape { states, inputs, .. } = self.shape;
         let places = (0..self.samples)
             .flat_map(|at| (0..inputs).flat_map(move |j| (0..states).map(move |i| (at, j, i))));
         let sign = |(at, j, i): (usize, usize, usize)| match self.disturbance {

@@ -3,24 +3,22 @@
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
 
-use crate::linear::system::LinearSystem;
 use crate::sets::interval_matrix::IntervalMatrix;
 use crate::upward::{UNDERFLOW, relative_error};
 
 /// Encloses the running sum Σ_{j<k} term(j) at each of `samples` samples k.
 ///
-/// `term(j)` iterates over the lower and upper ends of a matrix of the shape of B, column by
-/// column.
+/// `term(j)` iterates over the lower and upper ends of a matrix of `rows` x `columns` entries,
+/// column by column.
 ///
 /// # Guarantee
 ///
 /// Outer.
 pub(crate) fn running_sum<I: Iterator<Item = (f64, f64)>>(
-    system: &LinearSystem,
+    (rows, columns): (usize, usize),
     samples: usize,
     term: impl Fn(usize) -> I + Sync,
 ) -> Vec<IntervalMatrix> {
-    let (rows, columns) = (system.states(), system.inputs());
     let length = samples.isqrt().max(1);
     let add = |mut sums: ColumnSums, k: usize| {
         sums.add(&[1.0], |_| term(k));

@@ -9,7 +9,7 @@ use crate::linear::exponential::powers::bound_within_step;
 use crate::linear::exponential::samples::SampleMatrices;
 use crate::linear::step::{PropagationStep, step};
 use crate::linear::system::LinearSystem;
-use crate::sets::interval_matrix::IntervalMatrix;
+use crate::sets::interval_matrix::{IntervalMatrix, midpoint};
 use crate::upward::mul_upward;
 
 /// Enclosures of e^{A t_k} and Γ(t_k) = ∫₀^{t_k} e^{Aτ} B dτ at every sample of a grid, from which
@@ -58,17 +58,63 @@ impl Propagation {
                 (SampleMatrices::after(system, &steps, grid.len(), &within_step), within_step)
             }
         };
-        // Sum the increments to Γ and bound all exponentials of the horizon.
+        Self::of(system.clone(), grid.clone(), steps, samples, &within_step)
+    }
+
+    /// Encloses Φᵏ and Σ_{j<k} Φʲ Γ of a step x ↦ Φ x + Γ u + γ that is repeated every `h` s, for
+    /// `count` samples: of a discrete system, or of one whose input acts within a step. The system
+    /// of the result has the middles of Φ, Γ and γ in place of A, B and d.
+    ///
+    /// # Errors
+    ///
+    /// Returns [`ReachError::Shape`] when the shapes do not fit, [`ReachError::NotFinite`], and
+    /// [`ReachError::Horizon`] when the enclosure is not finite.
+    ///
+    /// # Panics
+    ///
+    /// As [`TimeGrid::uniform`].
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use nalgebra::{dmatrix, dvector};
+    /// use reachtube_reach::{Propagation, PropagationStep};
+    ///
+    /// let [phi, gamma] = [0.5, 1.0].map(|x: f64| dmatrix![x.into()]);
+    /// let step = PropagationStep { phi, gamma, drift: dvector![0.0.into()] };
+    /// let halving = Propagation::of_step(step, 1.0, 4)?;
+    /// assert!(halving.exponential(3)[(0, 0)].contains(0.125));
+    /// assert!(halving.integral(3)[(0, 0)].contains(1.75));
+    /// # Ok::<(), reachtube_reach::ReachError>(())
+    /// ```
+    pub fn of_step(step: PropagationStep, h: f64, count: usize) -> Result<Self, ReachError> {
+        let PropagationStep { phi, gamma, drift } = &step;
+        let system =
+            LinearSystem::new(midpoint(phi), midpoint(gamma), drift.map(|entry| entry.mid()))?;
+        let samples = SampleMatrices::of_step(&system, &step, count);
+        let within_step = DMatrix::identity(system.states(), system.states());
+        Self::of(system, TimeGrid::uniform(h, count), vec![step], samples, &within_step)
+    }
+
+    /// Sums the increments to Γ and bounds all exponentials of the horizon.
+    fn of(
+        system: LinearSystem,
+        grid: TimeGrid,
+        steps: Vec<PropagationStep>,
+        samples: SampleMatrices,
+        within_step: &DMatrix<f64>,
+    ) -> Result<Self, ReachError> {
+        let shape = (system.states(), system.inputs());
         let (largest, integral) = rayon::join(
             || samples.largest(),
-            || running_sum(system, grid.len(), |k| samples.increment_ends(k)),
+            || running_sum(shape, grid.len(), |k| samples.increment_ends(k)),
         );
-        let bound = mul_upward(&largest, &within_step);
+        let bound = mul_upward(&largest, within_step);
         let last = integral.last().into_iter().flat_map(|last| last.iter().map(|x| x.mag()));
         if !bound.iter().copied().chain(last).all(f64::is_finite) {
             return Err(ReachError::Horizon { time: grid.times().last().copied().unwrap_or(0.0) });
         }
-        Ok(Self { system: system.clone(), grid: grid.clone(), steps, samples, integral, bound })
+        Ok(Self { system, grid, steps, samples, integral, bound })
     }
 
     /// Returns the system.
@@ -119,7 +165,7 @@ impl Propagation {
 
     /// Encloses Σ_{j<k} |e^{A t_j} Γ(h_j)| at every sample k.
     pub(crate) fn absolute_sums(&self) -> Vec<IntervalMatrix> {
-        running_sum(&self.system, self.grid.len(), |k| {
+        running_sum((self.system.states(), self.system.inputs()), self.grid.len(), |k| {
             self.samples.increment_ends(k).map(absolute_ends)
         })
     }

@@ -45,7 +45,7 @@ impl Context {
         let mut text = serde_json::to_string(&parts).expect("settings have string keys");
         text += &format!("{:?}", options.gap_limit);
         let digest = Sha256::digest(text).into();
-        let shape = Shape { states: dynamics.states(), inputs: dynamics.inputs() };
+        let shape = Shape::of_states(dynamics.states(), dynamics.inputs());
         let nominal = settings.nominal;
         Ok(Self { drive: Arc::clone(drive), shape, options, nominal, is_own, digest })
     }

@@ -103,6 +103,13 @@ impl SampleMatrices {
         samples
     }
 
+    /// Encloses the pairs [Φᵏ, Φᵏ Γ] for k < `count` of a step that is repeated, whatever Φ is.
+    pub(crate) fn of_step(system: &LinearSystem, step: &PropagationStep, count: usize) -> Self {
+        let powers = MatrixPowers::uniform(&step.phi, count);
+        let pair = |k: usize| [powers.at(k), product(&powers.at(k), &step.gamma)];
+        Self::from_pairs(system, (0..count).into_par_iter().map(pair).collect())
+    }
+
     /// Allocates room for `blocks` blocks of this size, this one included.
     ///
     /// Zeroed memory stays untouched until the threads write to it.

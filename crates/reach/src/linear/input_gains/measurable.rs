@@ -121,7 +121,7 @@ impl<'a> Cells<'a> {
 
     /// Sums the cells up to each sample of the original grid.
     pub(super) fn gains(&self) -> Vec<IntervalMatrix> {
-        let fine = running_sum(self.propagation.system(), self.propagation.grid().len(), |k| {
+        let fine = running_sum(self.turning.shape(), self.propagation.grid().len(), |k| {
             ends(self.integrals[k].as_slice())
         });
         fine.into_iter().step_by(self.parts).collect()

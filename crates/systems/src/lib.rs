@@ -1,0 +1,31 @@
+#![doc = include_str!("../README.md")]
+
+mod arx;
+mod check;
+mod code;
+mod description;
+mod error;
+mod form;
+mod make;
+mod model;
+mod motion;
+mod rows;
+mod run;
+mod system;
+mod tube;
+mod words;
+
+pub use check::{CheckedRun, SystemCheck};
+pub use code::Code;
+pub use description::{
+    BoxCentre, NamedSignal, NominalStartRule, ScaleOf, SetDescription, SetDescriptions, ShapedSet,
+    SignalUnit, SimpleSet, SystemDescription, SystemKind,
+};
+pub use error::{Error, Result};
+pub use form::ScaledSet;
+pub use make::MadeSystem;
+pub use model::{OutputWidth, RunsLeftOut, SystemModel, SystemRecording, WithoutModel};
+pub use rows::SystemSets;
+pub use run::SystemRun;
+pub use system::OutputSystem;
+pub use tube::OutputTube;
