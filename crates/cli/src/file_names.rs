@@ -10,6 +10,11 @@ pub(crate) fn of_reach(reach: &[SuiteReach]) -> Vec<String> {
     distinct_names(reach.iter().map(SuiteReach::name), &["", "_tube"])
 }
 
+/// Returns one file name for each recording of a system.
+pub(crate) fn of_runs(names: impl Iterator<Item = String>) -> Vec<String> {
+    distinct_names(names, &[""])
+}
+
 /// Returns one folder name for each exported case.
 pub(crate) fn of_cases(cases: &[ExportCase]) -> Vec<String> {
     distinct_names(cases.iter().map(|case| case.reach.name()), &[""])

@@ -6,10 +6,11 @@ use reachtube::campaign::RecordedCampaign;
 use reachtube::identify::Summary;
 use reachtube::pipeline::{ModelOutput, VerifyOutput};
 use reachtube::recordings::Inspection;
+use reachtube::systems::{SystemCheck, SystemDescription, SystemModel};
 use reachtube::tracking::TrackingCheck;
 use reachtube::verify::StopStudy;
 use reachtube::{Check, abstraction};
-use reachtube_files::schema_of_any;
+use reachtube_files::{schema, schema_of_any};
 use reachtube_logs::LogInspection;
 use schemars::JsonSchema;
 use serde_json::Value;
@@ -25,6 +26,7 @@ use crate::commands::reach::ReachOutput;
 use crate::commands::report::ReportOutput;
 use crate::commands::reproduce::Numbers;
 use crate::commands::robot::RobotOutput;
+use crate::commands::system::{SystemOutput, TubesOutput};
 use crate::commands::tracking::TrackingOutput;
 use crate::output::ErrorOutput;
 
@@ -35,6 +37,10 @@ pub(crate) enum SchemaOf {
     Model,
     /// An abstraction file
     Abstraction,
+    /// A file with a system
+    System,
+    /// A model file of a system
+    SystemModel,
     /// What each command prints with --json
     Results,
 }
@@ -43,6 +49,8 @@ pub(crate) fn schema_of(what: SchemaOf) -> Value {
     match what {
         SchemaOf::Model => model_schema(),
         SchemaOf::Abstraction => abstraction::file_schema(),
+        SchemaOf::System => schema::<SystemDescription>(),
+        SchemaOf::SystemModel => schema::<SystemModel>(),
         SchemaOf::Results => results(),
     }
 }
@@ -55,7 +63,9 @@ fn results() -> Value {
             ("abstract", AbstractOutput::json_schema),
             ("campaign", RecordedCampaign::json_schema),
             ("check", Check::json_schema),
+            ("check_system", SystemCheck::json_schema),
             ("check_tracking", TrackingCheck::json_schema),
+            ("conform_system", SystemOutput::json_schema),
             ("convert", ConvertOutput::json_schema),
             ("demo", DemoOutput::json_schema),
             ("error", ErrorOutput::json_schema),
@@ -72,6 +82,7 @@ fn results() -> Value {
             ("monitor", Event::json_schema),
             ("prepare", PrepareOutput::json_schema),
             ("reach", ReachOutput::json_schema),
+            ("reach_system", TubesOutput::json_schema),
             ("report", ReportOutput::json_schema),
             ("reproduce", Numbers::json_schema),
             ("robot_show", RobotOutput::json_schema),

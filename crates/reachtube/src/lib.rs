@@ -27,5 +27,6 @@ pub use reachtube_reach::{
 pub use reachtube_recordings::{self as recordings, DataSet, MemoryRuns, Run, RunSource, Torque};
 pub use reachtube_robot::{self as robot, Robot};
 pub use reachtube_scalar::{self as scalar, number};
+pub use reachtube_systems as systems;
 pub use reachtube_tracking as tracking;
 pub use reachtube_verify as verify;

@@ -3,11 +3,13 @@
 use nalgebra::DMatrix;
 
 use crate::description::{
-    NamedSignal, NominalStartRule, SetDescription, SetDescriptions, SimpleSet, SystemDescription,
-    SystemKind,
+    MatrixEntry, NamedSignal, NominalStartRule, SetDescription, SetDescriptions, ShapedSet,
+    SimpleSet, SystemDescription, SystemKind,
 };
 use crate::error::{Error, Result};
+use crate::identify::FreeNumbers;
 use crate::make::MadeSystem;
+use crate::model::RunsLeftOut;
 use crate::run::SystemRun;
 use crate::system::OutputSystem;
 
@@ -53,25 +55,37 @@ pub(crate) fn conform(system: &OutputSystem, runs: &[SystemRun]) -> Result<MadeS
         return Err(Error::Short { run: short.name.clone(), samples, needed });
     }
     runs.iter().try_for_each(|run| system.step_of(run).map(|_| ()))?;
-    // Every order is judged by the same samples.
+    // Every order is judged by the same samples, every second recording by the others.
+    let has_halves = runs.len() > 1;
+    let half: Vec<SystemRun> = runs.iter().step_by(2).cloned().collect();
     let judged = |order: Order| {
-        let found = identified(system, runs, order)?;
-        let made = found.made(&found.past_after(runs, first)).ok()?;
-        let factor = made.model.left_out.factor.unwrap_or(1.0).max(1.0);
-        Some((made.model.cost * factor, made))
+        let found = identified(system, if has_halves { &half } else { runs }, order, first)?;
+        let past = found.past_after(runs, first);
+        let (left_out, needed) = found.half_left_out(&past).ok()?;
+        Some((needed, order, left_out))
     };
-    let judged: Vec<(f64, MadeSystem)> = orders.filter_map(judged).collect();
-    let best = judged.iter().map(|(needed, _)| *needed).fold(f64::INFINITY, f64::min);
-    let simplest = judged.into_iter().find(|(needed, _)| *needed <= NEARLY * best);
-    simplest.map(|(_, made)| made).ok_or_else(|| Error::System {
+    let judged: Vec<(f64, Order, RunsLeftOut)> = orders.filter_map(judged).collect();
+    let best = judged.iter().map(|(needed, ..)| *needed).fold(f64::INFINITY, f64::min);
+    let simplest = judged.into_iter().find(|(needed, ..)| *needed <= NEARLY * best);
+    let made = simplest.and_then(|(_, order, left_out)| {
+        let found = identified(system, runs, order, first)?;
+        let left_out = if has_halves { left_out } else { RunsLeftOut::default() };
+        Some(found.made(&found.past_after(runs, first), Some(left_out)))
+    });
+    made.transpose()?.ok_or_else(|| Error::System {
         file: None,
         problem: "no order fits the recordings: record longer motions of outputs and inputs".into(),
     })
 }
 
-/// Returns the system of the factors that explain outputs best, one step ahead; `None` where they
-/// are not determined.
-fn identified(system: &OutputSystem, runs: &[SystemRun], order: Order) -> Option<OutputSystem> {
+/// Returns the system of the factors that explain outputs best over whole motions, from those on
+/// that explain them best one step ahead; `None` where these are not determined.
+fn identified(
+    system: &OutputSystem,
+    runs: &[SystemRun],
+    order: Order,
+    first: usize,
+) -> Option<OutputSystem> {
     let [m, p] = [system.description.inputs.len(), system.outputs()];
     let width = order.order * (p + m);
     let mut normal = DMatrix::<f64>::zeros(width, width);
@@ -94,14 +108,25 @@ fn identified(system: &OutputSystem, runs: &[SystemRun], order: Order) -> Option
     }
     // Outputs and inputs of other sizes count alike.
     let size: Vec<f64> = (0..width).map(|j| f64::sqrt(normal[(j, j)])).collect();
-    if size.iter().any(|size| *size == 0.0) {
+    if size.contains(&0.0) {
         return None;
     }
     let scaled = DMatrix::from_fn(width, width, |i, j| normal[(i, j)] / size[i] / size[j]);
     let target = DMatrix::from_fn(width, p, |i, j| right[(i, j)] / size[i]);
     let found = scaled.svd(true, true).solve(&target, 1e-13).ok()?;
-    let factor = |output: usize, j: usize| found[(j, output)] / size[j];
-    OutputSystem::new(described(system, order, &factor)).ok()
+    let start: Vec<f64> = (0..p)
+        .flat_map(|i| (0..width).map(move |j| (i, j)))
+        .map(|(i, j)| found[(j, i)] / size[j])
+        .collect();
+    let of = |numbers: &[f64]| {
+        let made = described(system, order, &|output, j| numbers[output * width + j]);
+        let made = OutputSystem::new(made).ok()?;
+        let past = made.past_after(runs, first);
+        Some((made, past))
+    };
+    let bounds = vec![[f64::NEG_INFINITY, f64::INFINITY]; start.len()];
+    let free = FreeNumbers { bounds, system: &of, weights: system.weights(runs) };
+    Some(of(&free.least_squares(&start))?.0)
 }
 
 /// Returns a system with the states y(k), y(k-1), .., u(k-1), u(k-2), ..
@@ -113,14 +138,15 @@ fn described(
     let [m, p] = [system.description.inputs.len(), system.outputs()];
     let (outputs, past) = (order.order, order.past_inputs());
     let n = outputs * p + past * m;
-    let (mut a, mut b) = (vec![vec![0.0; n]; n], vec![vec![0.0; m]; n]);
+    let zero = MatrixEntry::Number(0.0);
+    let (mut a, mut b) = (vec![vec![zero.clone(); n]; n], vec![vec![zero; m]; n]);
     for i in 0..p {
         for lag in 0..outputs {
-            (0..p).for_each(|j| a[i][lag * p + j] = factor(i, lag * p + j));
+            (0..p).for_each(|j| a[i][lag * p + j] = MatrixEntry::Number(factor(i, lag * p + j)));
             // The input u(k + 1 - delay - lag) is the state of delay + lag - 1 samples before.
             let before = order.delay + lag - 1;
             for j in 0..m {
-                let value = factor(i, outputs * p + lag * m + j);
+                let value = MatrixEntry::Number(factor(i, outputs * p + lag * m + j));
                 match before {
                     0 => b[i][j] = value,
                     _ => a[i][outputs * p + (before - 1) * m + j] = value,
@@ -128,9 +154,10 @@ fn described(
             }
         }
     }
-    (p..outputs * p).for_each(|i| a[i][i - p] = 1.0);
-    (0..m.min(past * m)).for_each(|j| b[outputs * p + j][j] = 1.0);
-    (outputs * p + m..n).for_each(|i| a[i][i - m] = 1.0);
+    let one = MatrixEntry::Number(1.0);
+    (p..outputs * p).for_each(|i| a[i][i - p] = one.clone());
+    (0..m.min(past * m)).for_each(|j| b[outputs * p + j][j] = one.clone());
+    (outputs * p + m..n).for_each(|i| a[i][i - m] = one.clone());
     let names = |signals: &[NamedSignal], from: usize, count: usize| -> Vec<NamedSignal> {
         let name = move |signal: &NamedSignal, lag: usize| {
             NamedSignal::Name(format!("{} {lag} before", signal.name()))
@@ -139,9 +166,13 @@ fn described(
     };
     let description = &system.description;
     let states = [names(&description.outputs, 0, outputs), names(&description.inputs, 1, past)];
-    let unit = |i: usize, width: usize| -> Vec<f64> {
-        (0..width).map(|j| f64::from(u8::from(i == j))).collect()
+    let unit = |i: usize, width: usize| -> Vec<MatrixEntry> {
+        (0..width).map(|j| MatrixEntry::Number(f64::from(u8::from(i == j)))).collect()
     };
+    // Outputs of the past were seen with noise; inputs are known.
+    let seen = (0..outputs * p).map(|i| (0..n).map(|j| f64::from(u8::from(i == j))).collect());
+    let of_past = ShapedSet { generators: seen.collect(), ..ShapedSet::default() };
+    let box_to_find = SetDescription::Simple(SimpleSet::Box);
     SystemDescription {
         kind: SystemKind::Discrete,
         states: states.concat(),
@@ -151,7 +182,8 @@ fn described(
         c: Some((0..p).map(|i| unit(i, n)).collect()),
         start: Some(NominalStartRule::Past { outputs, inputs: past }),
         sets: SetDescriptions {
-            start: Some(SetDescription::Simple(SimpleSet::None)),
+            start: Some(SetDescription::Shaped(of_past)),
+            noise: Some(description.sets.noise.clone().unwrap_or(box_to_find)),
             ..description.sets.clone()
         },
         ..description.clone()

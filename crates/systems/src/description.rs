@@ -30,25 +30,28 @@ pub struct SystemDescription {
     pub outputs: Vec<NamedSignal>,
     /// A, N x N.
     #[serde(rename = "A", default, skip_serializing_if = "Option::is_none")]
-    pub a: Option<Vec<Vec<f64>>>,
+    pub a: Option<MatrixRows>,
     /// B, N x m; 0 if it is left out.
     #[serde(rename = "B", default, skip_serializing_if = "Option::is_none")]
-    pub b: Option<Vec<Vec<f64>>>,
+    pub b: Option<MatrixRows>,
     /// E, N x q; B if it is left out, or 1 without B.
     #[serde(rename = "E", default, skip_serializing_if = "Option::is_none")]
-    pub e: Option<Vec<Vec<f64>>>,
+    pub e: Option<MatrixRows>,
     /// C, p x N; if it is left out, each output is the state of its name.
     #[serde(rename = "C", default, skip_serializing_if = "Option::is_none")]
-    pub c: Option<Vec<Vec<f64>>>,
+    pub c: Option<MatrixRows>,
     /// D, p x m; 0 if it is left out.
     #[serde(rename = "D", default, skip_serializing_if = "Option::is_none")]
-    pub d: Option<Vec<Vec<f64>>>,
+    pub d: Option<MatrixRows>,
     /// F, p x r; 1 if it is left out.
     #[serde(rename = "F", default, skip_serializing_if = "Option::is_none")]
-    pub f: Option<Vec<Vec<f64>>>,
+    pub f: Option<MatrixRows>,
     /// The delay of inputs, s, by their names.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub delay: BTreeMap<String, f64>,
+    pub delay: BTreeMap<String, MatrixEntry>,
+    /// Numbers that entries of matrices and delays may name, and that are found from recordings.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameters: BTreeMap<String, SystemParameter>,
     /// Where the nominal motion of a recording starts. If it is left out: at the columns of the
     /// states, if a recording has all of them, and else where its first samples tell.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -60,6 +63,31 @@ pub struct SystemDescription {
     /// left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weights: Option<Vec<f64>>,
+}
+
+/// A matrix, row by row.
+pub type MatrixRows = Vec<Vec<MatrixEntry>>;
+
+/// An entry of a matrix: a number, or a formula of parameters such as "-1 / tau".
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum MatrixEntry {
+    /// A number.
+    Number(f64),
+    /// A formula.
+    Formula(String),
+}
+
+/// A number that is found from recordings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SystemParameter {
+    /// Its value, with which a search begins.
+    pub start: f64,
+    /// Its lowest value.
+    pub low: f64,
+    /// Its highest value.
+    pub high: f64,
 }
 
 /// How a system moves on.
@@ -249,5 +277,37 @@ impl<'de> Deserialize<'de> for SetDescription {
             _ => None,
         };
         deserializer.deserialize_any(TextOrTable(expected, of_text, Self::Shaped, PhantomData))
+    }
+}
+
+impl<'de> Deserialize<'de> for MatrixEntry {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Entry;
+
+        impl Visitor<'_> for Entry {
+            type Value = MatrixEntry;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, or a formula of parameters such as \"-1 / tau\"")
+            }
+
+            fn visit_f64<E>(self, number: f64) -> Result<MatrixEntry, E> {
+                Ok(MatrixEntry::Number(number))
+            }
+
+            fn visit_i64<E>(self, number: i64) -> Result<MatrixEntry, E> {
+                Ok(MatrixEntry::Number(number as f64))
+            }
+
+            fn visit_u64<E>(self, number: u64) -> Result<MatrixEntry, E> {
+                Ok(MatrixEntry::Number(number as f64))
+            }
+
+            fn visit_str<E>(self, text: &str) -> Result<MatrixEntry, E> {
+                Ok(MatrixEntry::Formula(text.into()))
+            }
+        }
+
+        deserializer.deserialize_any(Entry)
     }
 }

@@ -6,6 +6,7 @@ mod code;
 mod description;
 mod error;
 mod form;
+mod identify;
 mod make;
 mod model;
 mod motion;
@@ -18,8 +19,9 @@ mod words;
 pub use check::{CheckedRun, SystemCheck};
 pub use code::Code;
 pub use description::{
-    BoxCentre, NamedSignal, NominalStartRule, ScaleOf, SetDescription, SetDescriptions, ShapedSet,
-    SignalUnit, SimpleSet, SystemDescription, SystemKind,
+    BoxCentre, MatrixEntry, MatrixRows, NamedSignal, NominalStartRule, ScaleOf, SetDescription,
+    SetDescriptions, ShapedSet, SignalUnit, SimpleSet, SystemDescription, SystemKind,
+    SystemParameter,
 };
 pub use error::{Error, Result};
 pub use form::ScaledSet;

@@ -1,5 +1,7 @@
 //! The smallest sets of a system, beside those without it.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 use reachtube_finding::{Finding, Severity};
 use reachtube_scalar::number::significant;
@@ -9,7 +11,8 @@ use serde::Serialize;
 use crate::arx;
 use crate::code::Code;
 use crate::description::{
-    BoxCentre, NamedSignal, NominalStartRule, SetDescriptions, SystemDescription, SystemKind,
+    BoxCentre, MatrixEntry, NamedSignal, NominalStartRule, SetDescriptions, SystemDescription,
+    SystemKind,
 };
 use crate::error::Result;
 use crate::model::{OutputWidth, RunsLeftOut, SystemModel, SystemRecording, WithoutModel};
@@ -58,11 +61,37 @@ impl OutputSystem {
         if self.description.kind == SystemKind::Arx {
             return arx::conform(self, runs);
         }
-        self.made(&self.with_past(runs)?)
+        let runs = self.with_past(runs)?;
+        let has_halves = !self.description.parameters.is_empty() && runs.len() > 1;
+        let half = |runs: &[SystemRun]| self.fitted(runs)?.half_left_out(runs);
+        let left_out = has_halves.then(|| half(&runs)).transpose()?.map(|(of, _)| of);
+        self.fitted(&runs)?.made(&runs, left_out)
     }
 
-    /// Does what [`conform`](Self::conform) does for a system whose factors are known.
-    pub(crate) fn made(&self, runs: &[SystemRun]) -> Result<MadeSystem> {
+    /// Returns what every second recording needs of the sets that the others give, and the mean
+    /// widths of these, times what is needed on average. The largest need is too much a matter of
+    /// luck to choose by.
+    pub(crate) fn half_left_out(&self, runs: &[SystemRun]) -> Result<(RunsLeftOut, f64)> {
+        let weights = self.weights(runs);
+        let motions = Motions::new(self, runs)?;
+        let rows = SetRows::new(self, &motions);
+        let kept: Vec<usize> = (0..runs.len()).step_by(2).collect();
+        let sets = rows.smallest(&kept, &weights)?.sets;
+        let others = (0..runs.len()).skip(1).step_by(2);
+        let needed: Vec<(usize, f64)> =
+            others.map(|run| (run, rows.beside(run, &sets).0)).collect();
+        let width = weighted(&rows.widths(&sets), &weights);
+        let mean = needed.iter().map(|(_, needed)| needed).sum::<f64>() / needed.len() as f64;
+        let needed_width = if needed.is_empty() { width } else { width * mean };
+        Ok((RunsLeftOut::new(&motions, needed, false), needed_width))
+    }
+
+    /// Does what [`conform`](Self::conform) does for a system whose numbers are known.
+    pub(crate) fn made(
+        &self,
+        runs: &[SystemRun],
+        left_out: Option<RunsLeftOut>,
+    ) -> Result<MadeSystem> {
         let weights = self.weights(runs);
         let motions = Motions::new(self, runs)?;
         let rows = SetRows::new(self, &motions);
@@ -70,7 +99,10 @@ impl OutputSystem {
         let found = rows.smallest(&all, &weights)?;
         let widths = rows.widths(&found.sets);
         let outputs = (0..self.outputs()).map(|i| self.output_width(i, &widths, runs)).collect();
-        let left_out = left_out(&rows, &found, &weights)?;
+        let left_out = match left_out {
+            Some(known) => known,
+            None => self::left_out(&rows, &found, &weights)?,
+        };
         let recordings = runs.iter().map(|run| SystemRecording {
             run: run.name.clone(),
             sha256: run.sha256.clone(),
@@ -98,7 +130,7 @@ impl OutputSystem {
     }
 
     /// Returns the weight of each output in the cost.
-    fn weights(&self, runs: &[SystemRun]) -> Vec<f64> {
+    pub(crate) fn weights(&self, runs: &[SystemRun]) -> Vec<f64> {
         let of_range = |i: usize| {
             let [low, high] = self.range(i, runs);
             if high > low { (high - low).recip().clamp(1e-9, 1e9) } else { 1.0 }
@@ -184,7 +216,8 @@ impl OutputSystem {
             (_, true, h) => h.unwrap_or(1.0),
             _ => 0.0,
         };
-        let square = (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect();
+        let number = MatrixEntry::Number;
+        let square = (0..n).map(|i| (0..n).map(|j| number(entry(i, j))).collect()).collect();
         let last = n - p;
         // A discrete system has the acceleration w over each step.
         let acts = |i: usize, j: usize| match (i == j + last, i == j, h) {
@@ -193,7 +226,7 @@ impl OutputSystem {
             (_, true, Some(h)) => h * h / 2.0,
             _ => 0.0,
         };
-        let seen = |i: usize| (0..n).map(|j| f64::from(u8::from(i == j))).collect();
+        let seen = |i: usize| (0..n).map(|j| number(f64::from(u8::from(i == j)))).collect();
         SystemDescription {
             kind: if h.is_some() { SystemKind::Discrete } else { SystemKind::Continuous },
             step: h,
@@ -202,11 +235,12 @@ impl OutputSystem {
             outputs: self.description.outputs.clone(),
             a: Some(square),
             b: None,
-            e: Some((0..n).map(|i| (0..p).map(|j| acts(i, j)).collect()).collect()),
+            e: Some((0..n).map(|i| (0..p).map(|j| number(acts(i, j))).collect()).collect()),
             c: Some((0..p).map(seen).collect()),
             d: None,
             f: None,
-            delay: Default::default(),
+            delay: BTreeMap::new(),
+            parameters: BTreeMap::new(),
             start,
             sets: SetDescriptions { centre: BoxCentre::Free, ..SetDescriptions::default() },
             weights: None,
@@ -244,15 +278,22 @@ fn left_out(rows: &SetRows<'_>, found: &FoundSets, weights: &[f64]) -> Result<Ru
         Ok(part.iter().map(needed).collect::<Vec<_>>())
     };
     let needed = parts.par_iter().map(of_part).collect::<Result<Vec<_>>>()?.concat();
-    let furthest = needed.iter().max_by(|a, b| a.1.total_cmp(&b.1)).copied();
-    let (run, factor) = furthest.unwrap_or_default();
-    Ok(RunsLeftOut {
-        runs: needed.len(),
-        is_in_turn,
-        inside: needed.iter().filter(|(_, needed)| *needed <= INSIDE).count(),
-        furthest: Some(rows.motions.deviations[run].run.clone()),
-        factor: Some(factor).filter(|factor| factor.is_finite()),
-    })
+    Ok(RunsLeftOut::new(rows.motions, needed, is_in_turn))
+}
+
+impl RunsLeftOut {
+    /// Sums up the parts of sets that recordings need which were left out.
+    fn new(motions: &Motions, needed: Vec<(usize, f64)>, is_in_turn: bool) -> Self {
+        let furthest = needed.iter().max_by(|a, b| a.1.total_cmp(&b.1)).copied();
+        let (run, factor) = furthest.unwrap_or_default();
+        Self {
+            runs: needed.len(),
+            is_in_turn,
+            inside: needed.iter().filter(|(_, needed)| *needed <= INSIDE).count(),
+            furthest: Some(motions.deviations[run].run.clone()),
+            factor: Some(factor).filter(|factor| factor.is_finite()),
+        }
+    }
 }
 
 /// Returns what speaks against a model.

@@ -1,13 +1,14 @@
 use std::path::Path;
 
+use exmex::Express;
 use nalgebra::{DMatrix, DVector};
 use reachtube_files::read_text;
 use reachtube_reach::{LinearSystem, Propagation, PropagationStep, TimeGrid, step};
 use reachtube_scalar::Interval;
 
 use crate::description::{
-    BoxCentre, NamedSignal, NominalStartRule, SetDescription, SimpleSet, SystemDescription,
-    SystemKind,
+    BoxCentre, MatrixEntry, MatrixRows, NamedSignal, NominalStartRule, SetDescription, SimpleSet,
+    SystemDescription, SystemKind, SystemParameter,
 };
 use crate::error::{Error, Result};
 use crate::form::SetForm;
@@ -76,20 +77,24 @@ impl OutputSystem {
         if n == 0 {
             return Err("the system has no states; name them: states = [\"x\"]".into());
         }
-        let needed = |name: &str, given: &Option<Vec<Vec<f64>>>, [rows, columns]: [usize; 2]| {
-            let given = given.as_ref().map(|given| matrix(name, given, rows, Some(columns)));
-            given.transpose()
+        check_parameters(&description)?;
+        let of = |name: &str, given: &Option<MatrixRows>, rows: usize, columns: Option<usize>| {
+            let given = given.as_ref().map(|given| evaluated(name, given, &description));
+            given.transpose()?.map(|given| matrix(name, &given, rows, columns)).transpose()
+        };
+        let needed = |name: &str, given: &Option<MatrixRows>, [rows, columns]: [usize; 2]| {
+            of(name, given, rows, Some(columns))
         };
         let a = needed("A", &description.a, [n, n])?.ok_or("A is missing")?;
         let b = needed("B", &description.b, [n, m])?;
-        let e = description.e.as_ref().map(|given| matrix("E", given, n, None)).transpose()?;
+        let e = of("E", &description.e, n, None)?;
         let e = e.or_else(|| b.clone().filter(|_| m > 0)).unwrap_or(DMatrix::identity(n, n));
         let c = match needed("C", &description.c, [p, n])? {
             Some(c) => c,
             None => selected(states, outputs)?,
         };
         let d = needed("D", &description.d, [p, m])?.unwrap_or(DMatrix::zeros(p, m));
-        let f = description.f.as_ref().map(|given| matrix("F", given, p, None)).transpose()?;
+        let f = of("F", &description.f, p, None)?;
         let f = f.unwrap_or(DMatrix::identity(p, p));
         let set = |given: &Option<SetDescription>, default: SimpleSet, dimension, name| {
             let default = SetDescription::Simple(default);
@@ -115,7 +120,12 @@ impl OutputSystem {
     fn to_identify(description: SystemDescription) -> Result<Self, String> {
         let SystemDescription { a, b, c, d, e, f, states, delay, start, sets, .. } = &description;
         let has_matrix = [a, b, c, d, e, f].iter().any(|given| given.is_some());
-        if has_matrix || !states.is_empty() || !delay.is_empty() || start.is_some() {
+        if has_matrix
+            || !description.parameters.is_empty()
+            || !states.is_empty()
+            || !delay.is_empty()
+            || start.is_some()
+        {
             let words = "an arx system has a step, inputs and outputs; its matrices, states, delay \
                          and start are found: leave them out";
             return Err(words.into());
@@ -269,13 +279,57 @@ fn delays(description: &SystemDescription) -> Result<Vec<f64>, String> {
     if let Some((name, _)) = description.delay.iter().find(|(name, _)| !known(name)) {
         return Err(format!("delay names {name}, which is no input"));
     }
-    if let Some((name, delay)) =
-        description.delay.iter().find(|(_, delay)| !(delay.is_finite() && **delay >= 0.0))
-    {
-        return Err(format!("the delay of {name} is {delay}; it must be a time of 0 s or more"));
+    let of = |input: &NamedSignal| {
+        let Some(given) = description.delay.get(input.name()) else { return Ok(0.0) };
+        let delay = entry("delay", given, description)?;
+        let name = input.name();
+        let is_time = delay.is_finite() && delay >= 0.0;
+        let wrong = || format!("the delay of {name} is {delay}; it must be a time of 0 s or more");
+        is_time.then_some(delay).ok_or_else(wrong)
+    };
+    description.inputs.iter().map(of).collect()
+}
+
+/// Returns the numbers of a matrix.
+fn evaluated(
+    name: &str,
+    rows: &MatrixRows,
+    description: &SystemDescription,
+) -> Result<Vec<Vec<f64>>, String> {
+    let row = |row: &Vec<MatrixEntry>| row.iter().map(|of| entry(name, of, description)).collect();
+    rows.iter().map(row).collect()
+}
+
+/// Returns the number of an entry, with parameters at their values.
+fn entry(name: &str, entry: &MatrixEntry, description: &SystemDescription) -> Result<f64, String> {
+    let text = match entry {
+        MatrixEntry::Number(number) => return Ok(*number),
+        MatrixEntry::Formula(text) => text,
+    };
+    let wrong = |problem: String| format!("{name} has the formula \"{text}\": {problem}");
+    let formula = exmex::parse::<f64>(text).map_err(|error| wrong(error.to_string()))?;
+    let value = |variable: &String| {
+        let known: Vec<&str> = description.parameters.keys().map(String::as_str).collect();
+        let parameter = description.parameters.get(variable).map(|of| of.start);
+        let missing = || match known.is_empty() {
+            true => wrong(format!("{variable} is no parameter; add it to [parameters]")),
+            false => wrong(format!("{variable} is no parameter; there are {}", known.join(", "))),
+        };
+        parameter.ok_or_else(missing)
+    };
+    let values = formula.var_names().iter().map(value).collect::<Result<Vec<f64>, _>>()?;
+    formula.eval(&values).map_err(|error| wrong(error.to_string()))
+}
+
+/// Checks the bounds of parameters.
+fn check_parameters(description: &SystemDescription) -> Result<(), String> {
+    let is_sound = |of: &SystemParameter| {
+        of.low.is_finite() && of.high.is_finite() && (of.low..=of.high).contains(&of.start)
+    };
+    match description.parameters.iter().find(|(_, of)| !is_sound(of)) {
+        Some((name, _)) => Err(format!("the parameter {name} needs low <= start <= high")),
+        None => Ok(()),
     }
-    let of = |input: &NamedSignal| description.delay.get(input.name()).copied().unwrap_or(0.0);
-    Ok(description.inputs.iter().map(of).collect())
 }
 
 /// Checks the lengths of weights and of a start that is given.

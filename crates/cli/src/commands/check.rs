@@ -2,9 +2,10 @@
 
 use clap::Args;
 use reachtube::conform::{Check, Keep, Notion};
+use reachtube::systems::SystemModel;
 use reachtube::tracking::TrackingModel;
 
-use crate::commands::tracking;
+use crate::commands::{system, tracking};
 use crate::data_arguments::ModelArguments;
 use crate::error::{Error, Result};
 use crate::global::global;
@@ -40,6 +41,12 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         return match args.notion {
             Some(_) => Err(Error::setting(tracking::NO_TORQUES)),
             None => tracking::check(&args.model, json),
+        };
+    }
+    if SystemModel::is_at(&args.model.model) {
+        return match args.notion {
+            Some(_) => Err(Error::setting(system::NO_ROBOT)),
+            None => system::check(&args.model, json),
         };
     }
     let (opened, check, outcome) = compared(args)?;

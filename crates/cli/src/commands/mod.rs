@@ -20,5 +20,6 @@ pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod robot;
 pub(crate) mod stop;
+pub(crate) mod system;
 pub(crate) mod tracking;
 pub(crate) mod verify;

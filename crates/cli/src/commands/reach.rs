@@ -2,28 +2,34 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::builder::ArgPredicate;
+use clap::{Arg, Args};
 use reachtube::conform::model::Provenance;
 use reachtube::conform::tube::Lost;
 use reachtube::conform::{Keep, Model, Stiction, SuiteReach, stiction};
 use reachtube::finding::{Finding, FrontEnd, Table};
 use reachtube::page::{Sources, page};
+use reachtube::systems::SystemModel;
 use reachtube::write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::commands::system;
 use crate::data_arguments::ModelArguments;
 use crate::error::Result;
 use crate::file_names;
 use crate::opened::OpenedCheck;
+use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::report_files;
 use reachtube::number::{at_least, four_decimals};
 
 const HELP: &str = "\
-Example:
+Examples:
   reachtube reach --model model.json --data recordings --suites A --out reach
+
+  reachtube reach --system rotor.toml --until 5 --step 0.01 --out reach
 
 Writes A.csv (reachable set at samples), A_tube.csv (over each step, an outer enclosure), the
 figures A_*.svg, and reach.json, which names model, settings, recordings and CSV files by digest.
@@ -32,10 +38,21 @@ Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
 
 /// Compute a model's reachable sets along recordings, at samples and between them
 #[derive(Debug, Args)]
-#[command(after_help = HELP)]
+#[command(
+    after_help = HELP,
+    mut_arg("model", |arg| optional(arg).required_unless_present("system")),
+    mut_arg("data", |arg| optional(arg).required_unless_present("system"))
+)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub model: ModelArguments,
+    /// File with a system whose sets are all given, instead of a model; without recordings, it
+    /// starts where the file says
+    #[arg(long, value_name = "FILE", conflicts_with = "model")]
+    pub system: Option<PathBuf>,
+    /// Time between samples of a continuous system without recordings, above 0 s
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "system")]
+    pub step: Option<f64>,
     /// Folder for the CSV files and figures
     #[arg(long, value_name = "FOLDER", default_value = "reach")]
     pub out: PathBuf,
@@ -101,7 +118,16 @@ struct Written<'a> {
     tube: PathBuf,
 }
 
+/// Returns an argument that a system stands in for: it is empty then.
+fn optional(arg: Arg) -> Arg {
+    arg.required(false).default_value_if("system", ArgPredicate::IsPresent, "")
+}
+
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    if args.system.is_some() || SystemModel::is_at(&args.model.model) {
+        let (system, how) = (args.system.as_deref(), (args.step, &*args.out));
+        return system::reach(system, &args.model, how, json);
+    }
     write::try_at(&args.out.join("A.csv"))?;
     let opened = OpenedCheck::new(&args.model, None, Keep::All)?;
     let OpenedCheck { model, problem, .. } = &opened;

@@ -31,6 +31,9 @@ Examples:
   reachtube conform --robot arm.toml --data recordings --torque motor --calibrate M7,M8,M9
       find the sets on the other motions, and scale them to hold these three
 
+  reachtube conform --system car.toml --data drives --out model.json
+      a linear system, its outputs and the forms of its sets are in the file
+
 Exit codes: 0 conformant, which is proved, 1 not proved, 2 error, 3 conformant, but the sets do not
 limit some joint.";
 
@@ -44,7 +47,7 @@ pub(crate) struct Arguments {
     #[arg(
         long,
         help_heading = "Model",
-        required_unless_present = "abstraction",
+        required_unless_present_any = ["abstraction", "system"],
         value_hint = ValueHint::FilePath
     )]
     pub robot: Option<String>,
@@ -86,6 +89,17 @@ pub(crate) struct Arguments {
         conflicts_with_all = ["robot", "lock", "expansion", "paper_model", "order"]
     )]
     pub abstraction: Option<PathBuf>,
+    /// File with a linear system and its outputs, instead of a robot
+    #[arg(
+        long,
+        help_heading = "Model",
+        value_name = "FILE",
+        conflicts_with_all = [
+            "robot", "lock", "abstraction", "expansion", "paper_model", "order", "SetArguments",
+            "horizon", "fit", "pull", "resume", "certificate", "report"
+        ]
+    )]
+    pub system: Option<PathBuf>,
     #[command(flatten)]
     pub data: DataArguments,
     /// Cut recordings, or logs as they are, into windows of this length, above 0 s, each a suite of

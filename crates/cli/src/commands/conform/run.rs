@@ -10,6 +10,7 @@ use reachtube::write;
 
 use super::arguments::Arguments;
 use super::settings::{basis, settings};
+use crate::commands::system;
 use crate::error::{Error, Result};
 use crate::global::global;
 use crate::outcome::Outcome;
@@ -18,6 +19,9 @@ use crate::progress::Progress;
 use crate::report_files;
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    if let Some(system) = &args.system {
+        return system::conform(system, &args.data, args.out.as_deref(), json);
+    }
     let (job, preparation) = job(args)?;
     for path in args.out.iter().chain(&args.certificate) {
         output::claim(path)?;
