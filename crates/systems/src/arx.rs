@@ -19,6 +19,9 @@ const MOST_ORDER: usize = 4;
 /// The longest delay that is tried, in steps.
 const MOST_DELAY: usize = 4;
 
+/// Number of samples of all recordings by which an order is chosen: the first ones of each.
+const SAMPLES_TO_CHOOSE: usize = 20_000;
+
 /// Widths no larger than this many times the least ones are nearly as good.
 const NEARLY: f64 = 1.1;
 
@@ -57,19 +60,20 @@ pub(crate) fn conform(system: &OutputSystem, runs: &[SystemRun]) -> Result<MadeS
     runs.iter().try_for_each(|run| system.step_of(run).map(|_| ()))?;
     // Every order is judged by the same samples, every second recording by the others.
     let has_halves = runs.len() > 1;
-    let half: Vec<SystemRun> = runs.iter().step_by(2).cloned().collect();
-    let judged = |order: Order| {
+    let most = (SAMPLES_TO_CHOOSE / runs.len()).max(4 * (first + 2));
+    let short: Vec<SystemRun> = runs.iter().map(|run| run.before(most)).collect();
+    let of_half = |order: Order, runs: &[SystemRun]| {
+        let half: Vec<SystemRun> = runs.iter().step_by(2).cloned().collect();
         let found = identified(system, if has_halves { &half } else { runs }, order, first)?;
-        let past = found.past_after(runs, first);
-        let (left_out, needed) = found.half_left_out(&past).ok()?;
-        Some((needed, order, left_out))
+        found.half_left_out(&found.past_after(runs, first)).ok()
     };
-    let judged: Vec<(f64, Order, RunsLeftOut)> = orders.filter_map(judged).collect();
+    let judged: Vec<(f64, Order)> =
+        orders.filter_map(|order| Some((of_half(order, &short)?.1, order))).collect();
     let best = judged.iter().map(|(needed, ..)| *needed).fold(f64::INFINITY, f64::min);
     let simplest = judged.into_iter().find(|(needed, ..)| *needed <= NEARLY * best);
-    let made = simplest.and_then(|(_, order, left_out)| {
+    let made = simplest.and_then(|(_, order)| {
+        let left_out = if has_halves { of_half(order, runs)?.0 } else { RunsLeftOut::default() };
         let found = identified(system, runs, order, first)?;
-        let left_out = if has_halves { left_out } else { RunsLeftOut::default() };
         Some(found.made(&found.past_after(runs, first), Some(left_out)))
     });
     made.transpose()?.ok_or_else(|| Error::System {

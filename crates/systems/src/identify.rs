@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::error::Result;
-use crate::motion::Motions;
 use crate::run::SystemRun;
 use crate::system::OutputSystem;
 
@@ -38,14 +37,13 @@ impl FreeNumbers<'_> {
     /// away.
     fn errors(&self, numbers: &[f64]) -> Option<DVector<f64>> {
         let (system, runs) = (self.system)(numbers)?;
-        let motions: Result<Motions> = Motions::new(&system, &runs);
-        let motions = motions.ok()?;
-        let outputs = || motions.deviations.iter().flat_map(|run| run.outputs.iter().enumerate());
+        let errors = runs.iter().map(|run| system.rough_errors(run)).collect::<Result<Vec<_>>>();
+        let errors = errors.ok()?;
         let p = self.weights.len();
-        let stride = p * (outputs().count() / MOST_OUTPUTS / p).max(1);
-        let kept = outputs().filter(|(at, _)| at % stride < p);
-        let errors = kept.map(|(at, error)| error.mid() * self.weights[at % p]);
-        let errors = DVector::from_vec(errors.collect());
+        let count: usize = errors.iter().map(Vec::len).sum();
+        let stride = p * (count / MOST_OUTPUTS / p).max(1);
+        let kept = errors.iter().flatten().enumerate().filter(|(at, _)| at % stride < p);
+        let errors = DVector::from_vec(kept.map(|(at, e)| e * self.weights[at % p]).collect());
         errors.iter().all(|error| error.is_finite()).then_some(errors)
     }
 
@@ -77,7 +75,11 @@ impl FreeNumbers<'_> {
             let mut gained = 0.0;
             while gained == 0.0 && damping < 1e9 {
                 let mut damped = normal.clone();
-                (0..numbers.len()).for_each(|j| damped[(j, j)] *= 1.0 + damping);
+                // A number without effect stays.
+                let least = f64::MIN_POSITIVE + 1e-12 * normal.diagonal().max();
+                (0..numbers.len()).for_each(|j| {
+                    damped[(j, j)] = damped[(j, j)].max(least) * (1.0 + damping);
+                });
                 let step = damped.cholesky().map(|of| of.solve(&right));
                 let next = step.map(|step| {
                     within(numbers.iter().zip(&step).map(|(number, step)| number - step).collect())

@@ -98,7 +98,9 @@ impl OutputSystem {
         let all: Vec<usize> = (0..runs.len()).collect();
         let found = rows.smallest(&all, &weights)?;
         let widths = rows.widths(&found.sets);
-        let outputs = (0..self.outputs()).map(|i| self.output_width(i, &widths, runs)).collect();
+        let spread = rows.spread();
+        let widths_of = |i: usize| self.output_width(i, (&widths, spread[i]), runs);
+        let outputs = (0..self.outputs()).map(widths_of).collect();
         let left_out = match left_out {
             Some(known) => known,
             None => self::left_out(&rows, &found, &weights)?,
@@ -146,7 +148,12 @@ impl OutputSystem {
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)])
     }
 
-    fn output_width(&self, i: usize, widths: &[Vec<f64>], runs: &[SystemRun]) -> OutputWidth {
+    fn output_width(
+        &self,
+        i: usize,
+        (widths, least): (&[Vec<f64>], f64),
+        runs: &[SystemRun],
+    ) -> OutputWidth {
         let own =
             || widths.iter().flat_map(|of| of.iter().skip(i).step_by(self.outputs()).copied());
         let [low, high] = self.range(i, runs);
@@ -154,6 +161,7 @@ impl OutputSystem {
             name: self.description.outputs[i].name().into(),
             mean: own().sum::<f64>() / own().count() as f64,
             largest: own().fold(0.0, f64::max),
+            least,
             motion: high - low,
         }
     }

@@ -65,6 +65,9 @@ pub struct OutputWidth {
     pub mean: f64,
     /// The largest width of its set.
     pub largest: f64,
+    /// The mean difference of the highest and the lowest deviation of a sample from the nominal
+    /// motion: no sets around the same motions are narrower.
+    pub least: f64,
     /// The difference of its highest and its lowest recorded value.
     pub motion: f64,
 }

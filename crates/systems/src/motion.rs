@@ -164,13 +164,8 @@ impl OutputSystem {
             let (samples, needed) = (run.len(), estimate.samples);
             return Err(Error::Short { run: run.name.clone(), samples, needed });
         }
-        let first = SystemRun {
-            times: run.times[..estimate.samples].to_vec(),
-            inputs: run.inputs[..estimate.samples * self.description().inputs.len()].to_vec(),
-            outputs: run.outputs[..estimate.samples * self.outputs()].to_vec(),
-            ..run.clone()
-        };
-        let free = self.deviations(&first, solved, &vec![0.0; self.a.nrows()]);
+        let free =
+            self.deviations(&run.before(estimate.samples), solved, &vec![0.0; self.a.nrows()]);
         let rest = DVector::from_iterator(free.len(), free.iter().map(|x| x.mid()));
         Ok((&estimate.inverse * rest).data.into())
     }
@@ -197,6 +192,38 @@ impl OutputSystem {
             acting.extend(std::iter::repeat_n(0.0, self.e.ncols()));
         }
         (acting, seen)
+    }
+
+    /// Returns recorded minus nominal outputs of a recording, in floating point.
+    pub(crate) fn rough_errors(&self, run: &SystemRun) -> Result<Vec<f64>> {
+        let (n, m, p) = (self.a.nrows(), self.description().inputs.len(), self.outputs());
+        let step = self.step_of(run)?;
+        // A start is estimated from no more samples than these.
+        let few = match self.description().start {
+            Some(NominalStartRule::Samples(samples)) => samples,
+            _ => 2 * n,
+        };
+        let solved = StepSolutions { step, propagation: self.propagation(step, few.max(2))? };
+        let estimate = StartEstimate::new(self, &solved.propagation);
+        let mut state = DVector::from_vec(self.start(run, &solved, &estimate)?);
+        let of_step = solved.propagation.step(0);
+        let [phi, gamma] = [&of_step.phi, &of_step.gamma].map(|matrix| matrix.map(|x| x.mid()));
+        let (acting, seen) = self.acting_inputs(run, step);
+        let width = gamma.ncols();
+        let (mut errors, mut next) = (Vec::with_capacity(run.outputs.len()), state.clone());
+        for k in 0..run.len() {
+            for i in 0..p {
+                let states = self.c.row(i).iter().zip(&state).map(|(c, x)| c * x).sum::<f64>();
+                let inputs = self.d.row(i).into_iter().zip(&seen[k * m..]).map(|(d, u)| d * u);
+                errors.push(run.outputs[k * p + i] - states - inputs.sum::<f64>());
+            }
+            next.gemv(1.0, &phi, &state, 0.0);
+            for (column, u) in gamma.column_iter().zip(&acting[k * width..]) {
+                next.axpy(*u, &column, 1.0);
+            }
+            std::mem::swap(&mut state, &mut next);
+        }
+        Ok(errors)
     }
 
     /// Returns recorded minus nominal outputs of a recording, from a nominal start on.

@@ -321,6 +321,19 @@ impl<'a> SetRows<'a> {
         are_outside
     }
 
+    /// Returns, for each output, the mean difference of the highest and the lowest deviation of a
+    /// sample.
+    pub(crate) fn spread(&self) -> Vec<f64> {
+        let all: Vec<usize> = (0..self.motions.deviations.len()).collect();
+        let envelopes = self.envelopes(&all);
+        let count: usize = envelopes.iter().map(Envelope::len).sum();
+        let of = |i: usize| {
+            let samples = envelopes.iter().flat_map(|of| (0..of.len()).map(move |k| (of, k)));
+            samples.map(|(of, k)| of.upper(k, i) - of.lower(k, i)).sum::<f64>() / count as f64
+        };
+        (0..self.system.outputs()).map(of).collect()
+    }
+
     /// Returns the widths of the outputs at each sample under some sets: for each time between
     /// samples, samples x p.
     pub(crate) fn widths(&self, sets: &SystemSets) -> Vec<Vec<f64>> {

@@ -41,6 +41,18 @@ impl SystemRun {
         self.times.is_empty()
     }
 
+    /// Returns the first `count` samples of the run, or all if it has no more.
+    pub(crate) fn before(&self, count: usize) -> Self {
+        let [m, p] = [&self.inputs, &self.outputs].map(|all| all.len() / self.len());
+        let count = count.min(self.len());
+        Self {
+            times: self.times[..count].to_vec(),
+            inputs: self.inputs[..count * m].to_vec(),
+            outputs: self.outputs[..count * p].to_vec(),
+            ..self.clone()
+        }
+    }
+
     /// Returns the run from sample `first` on.
     pub(crate) fn after(&self, first: usize) -> Self {
         let [m, p] = [&self.inputs, &self.outputs].map(|all| all.len() / self.len());

@@ -1,3 +1,4 @@
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use exmex::Express;
@@ -12,6 +13,9 @@ use crate::description::{
 };
 use crate::error::{Error, Result};
 use crate::form::SetForm;
+
+/// Names that formulas have for constants.
+const CONSTANTS: [&str; 6] = ["e", "E", "PI", "π", "TAU", "τ"];
 
 /// A linear system that is seen through its outputs.
 #[derive(Debug, Clone, PartialEq)]
@@ -326,8 +330,24 @@ fn check_parameters(description: &SystemDescription) -> Result<(), String> {
     let is_sound = |of: &SystemParameter| {
         of.low.is_finite() && of.high.is_finite() && (of.low..=of.high).contains(&of.start)
     };
-    match description.parameters.iter().find(|(_, of)| !is_sound(of)) {
-        Some((name, _)) => Err(format!("the parameter {name} needs low <= start <= high")),
+    if let Some((name, _)) = description.parameters.iter().find(|(_, of)| !is_sound(of)) {
+        return Err(format!("the parameter {name} needs low <= start <= high"));
+    }
+    let SystemDescription { a, b, c, d, e, f, delay, .. } = description;
+    let rows = [a, b, c, d, e, f].into_iter().flatten().flatten().flatten();
+    let names = |entry: &MatrixEntry| match entry {
+        MatrixEntry::Number(_) => vec![],
+        MatrixEntry::Formula(text) => {
+            exmex::parse::<f64>(text).map_or(vec![], |formula| formula.var_names().to_vec())
+        }
+    };
+    let used: BTreeSet<String> = rows.chain(delay.values()).flat_map(names).collect();
+    match description.parameters.keys().find(|name| !used.contains(*name)) {
+        // In formulas, e is Euler's number.
+        Some(name) if CONSTANTS.contains(&name.as_str()) => {
+            Err(format!("in formulas {name} is a constant; give the parameter another name"))
+        }
+        Some(name) => Err(format!("no matrix and no delay has the parameter {name}; leave it out")),
         None => Ok(()),
     }
 }

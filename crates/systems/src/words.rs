@@ -4,6 +4,7 @@ use reachtube_finding::{Finding, Severity, Summary, Table};
 use reachtube_scalar::number::{counted, significant, two_digits_up};
 
 use crate::check::SystemCheck;
+use crate::description::{NominalStartRule, SetDescription, ShapedSet};
 use crate::form::ScaledSet;
 use crate::make::MadeSystem;
 use crate::model::SystemModel;
@@ -52,7 +53,11 @@ impl MadeSystem {
         if let Some(without) = &model.without_model {
             summary.fact("without a model", without.how.clone());
         }
+        let has_past = matches!(model.system.start, Some(NominalStartRule::Past { .. }));
         let starts = match model.start_samples {
+            _ if has_past => {
+                "outputs and inputs before; X0 holds the noise of these outputs".into()
+            }
             0 => "known at the first sample".into(),
             count => format!(
                 "estimated from the first {count} samples by least squares: these have seen the \
@@ -67,9 +72,13 @@ impl MadeSystem {
 
 impl SystemModel {
     fn sets_in_words(&self) -> String {
-        let of = |name: &str, set: &ScaledSet| {
-            if set.scale.is_empty() {
-                return format!("{name} = 0");
+        let of = |(name, set, given): (&str, &ScaledSet, &Option<SetDescription>)| {
+            match given {
+                _ if set.scale.is_empty() => return format!("{name} = 0"),
+                Some(SetDescription::Shaped(ShapedSet { fixed: true, .. })) => {
+                    return format!("{name} as given");
+                }
+                _ => {}
             }
             let mut scales: Vec<String> =
                 set.scale.iter().take(MOST_FACTORS).map(|scale| significant(*scale, 3)).collect();
@@ -81,9 +90,13 @@ impl SystemModel {
             }
             format!("{name} {}", scales.join(", "))
         };
-        let sets = &self.sets;
-        let all = [("X0", &sets.start), ("W", &sets.disturbance), ("V", &sets.noise)];
-        let words = all.map(|(name, set)| of(name, set)).join("; ");
+        let (sets, given) = (&self.sets, &self.system.sets);
+        let all = [
+            ("X0", &sets.start, &given.start),
+            ("W", &sets.disturbance, &given.disturbance),
+            ("V", &sets.noise, &given.noise),
+        ];
+        let words = all.map(of).join("; ");
         format!("factors of their generators: {words}")
     }
 
@@ -115,13 +128,14 @@ fn table(model: &SystemModel) -> Table {
         };
         vec![
             output.name.clone(),
+            number(output.least),
             number(output.mean),
             number(output.largest),
             number(output.motion),
             part,
         ]
     };
-    let header = ["output", "mean width", "largest width", "motion", "mean of motion"];
+    let header = ["output", "least", "mean width", "largest width", "motion", "mean of motion"];
     Table::new(header, model.outputs.iter().zip(&model.system.outputs).map(row).collect())
 }
 

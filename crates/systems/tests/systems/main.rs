@@ -4,6 +4,7 @@ mod arx;
 mod by_hand;
 mod crowd;
 mod files;
+mod gray;
 
 use std::path::Path;
 
