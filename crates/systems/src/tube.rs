@@ -97,7 +97,7 @@ impl SystemModel {
         let step = match (self.system.step, step) {
             (Some(step), None) | (None, Some(step)) => step,
             (None, None) => {
-                return Err(wrong("a continuous system needs the time between samples"));
+                return Err(wrong("a continuous system needs a step, the time between samples"));
             }
             (Some(_), Some(_)) => return Err(wrong("a discrete system has a step of its own")),
         };

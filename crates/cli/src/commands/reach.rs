@@ -118,9 +118,9 @@ struct Written<'a> {
     tube: PathBuf,
 }
 
-/// Returns an argument that a system stands in for: it is empty then.
+/// Returns an argument that a system stands in for, with a dash in its place.
 fn optional(arg: Arg) -> Arg {
-    arg.required(false).default_value_if("system", ArgPredicate::IsPresent, "")
+    arg.required(false).default_value_if("system", ArgPredicate::IsPresent, "-")
 }
 
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {

@@ -123,7 +123,7 @@ pub(crate) fn reach(
         None => SystemModel::open(&args.model)?,
     };
     let (data, until) = (&args.data.data, args.data.until);
-    let tubes = match (data.as_os_str().is_empty(), until) {
+    let tubes = match (system.is_some() && data == Path::new("-"), until) {
         (true, Some(until)) => vec![model.reach_until(until, step)?],
         (true, None) => {
             return Err(Error::setting(

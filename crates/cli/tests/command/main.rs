@@ -40,6 +40,7 @@ mod servo;
 mod short;
 mod stability;
 mod stop;
+mod system;
 mod terminal;
 mod tracking;
 mod verdicts;
