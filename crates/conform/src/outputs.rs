@@ -25,7 +25,7 @@ pub struct OutputRows {
 /// The smallest sets, as a program found them: nothing is proved of them yet.
 #[derive(Debug, Clone)]
 pub struct SmallestSets {
-    /// Centre and radius of each set of the start (X0), and of those that act later (U).
+    /// Centre and radius of each set of the start (X0), and of each set that acts later (U).
     pub sets: UncertaintySets,
     /// The integral over time of Σ_i s_i width_i of the outputs.
     pub cost: f64,

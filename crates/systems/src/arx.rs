@@ -82,8 +82,8 @@ pub(crate) fn conform(system: &OutputSystem, runs: &[SystemRun]) -> Result<MadeS
     })
 }
 
-/// Returns the system of the factors that explain outputs best over whole motions, from those on
-/// that explain them best one step ahead; `None` where these are not determined.
+/// Returns the system of the factors that explain outputs best over whole motions, from the
+/// factors on that explain them best one step ahead; `None` where these are not determined.
 fn identified(
     system: &OutputSystem,
     runs: &[SystemRun],

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::model::SystemModel;
-use crate::motion::Motions;
+use crate::motion::NominalMotions;
 use crate::rows::SetRows;
 use crate::run::SystemRun;
 
@@ -51,7 +51,7 @@ impl SystemModel {
     pub fn check(&self, runs: &[SystemRun]) -> Result<SystemCheck> {
         let system = self.system()?;
         let runs = system.with_past(runs)?;
-        let motions = Motions::new(&system, &runs)?;
+        let motions = NominalMotions::new(&system, &runs)?;
         let rows = SetRows::new(&system, &motions);
         let of_run = |(at, run): (usize, &SystemRun)| {
             let (needed, [k, i], outside) = rows.beside(at, &self.sets);

@@ -151,7 +151,7 @@ impl NamedSignal {
         }
     }
 
-    /// Returns the unit with a blank before it; nothing if it is not known.
+    /// Returns the unit with a blank before it; no text if it is not known.
     #[must_use]
     pub fn unit(&self) -> String {
         match self {
@@ -282,9 +282,9 @@ impl<'de> Deserialize<'de> for SetDescription {
 
 impl<'de> Deserialize<'de> for MatrixEntry {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Entry;
+        struct EntryVisitor;
 
-        impl Visitor<'_> for Entry {
+        impl Visitor<'_> for EntryVisitor {
             type Value = MatrixEntry;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -308,6 +308,6 @@ impl<'de> Deserialize<'de> for MatrixEntry {
             }
         }
 
-        deserializer.deserialize_any(Entry)
+        deserializer.deserialize_any(EntryVisitor)
     }
 }

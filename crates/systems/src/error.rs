@@ -77,7 +77,7 @@ pub enum Error {
         time: f64,
         /// The output.
         output: String,
-        /// How far it is from what can be reached.
+        /// How far it is from the outputs that can be reached.
         off: f64,
     },
     /// A model file is not one.

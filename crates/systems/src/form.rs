@@ -5,7 +5,7 @@ use crate::description::{ScaleOf, SetDescription, ShapedSet, SimpleSet};
 /// The form of a set: all sums of generators, each times a number between plus and minus its
 /// factor. Factors are found, one for each generator or one for all, or they are 1.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct SetForm {
+pub(crate) struct GeneratorForm {
     /// The generators as columns, dimension x their number.
     pub generators: DMatrix<f64>,
     /// For each generator, the number of the factor that it has; `None` for 1.
@@ -16,7 +16,7 @@ pub(crate) struct SetForm {
     pub is_box: bool,
 }
 
-impl SetForm {
+impl GeneratorForm {
     /// Returns the form that a description gives a set of `dimension` entries.
     ///
     /// # Errors

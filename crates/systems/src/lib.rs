@@ -3,6 +3,7 @@
 mod arx;
 mod check;
 mod code;
+mod conform;
 mod description;
 mod error;
 mod form;
@@ -26,7 +27,7 @@ pub use description::{
 pub use error::{Error, Result};
 pub use form::ScaledSet;
 pub use make::MadeSystem;
-pub use model::{OutputWidth, RunsLeftOut, SystemModel, SystemRecording, WithoutModel};
+pub use model::{OutputWidth, OutputsAlone, RunsLeftOut, SystemModel, SystemRecording};
 pub use rows::SystemSets;
 pub use run::SystemRun;
 pub use system::OutputSystem;

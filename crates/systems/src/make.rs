@@ -8,15 +8,14 @@ use reachtube_scalar::number::significant;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::arx;
 use crate::code::Code;
 use crate::description::{
     BoxCentre, MatrixEntry, NamedSignal, NominalStartRule, SetDescriptions, SystemDescription,
     SystemKind,
 };
 use crate::error::Result;
-use crate::model::{OutputWidth, RunsLeftOut, SystemModel, SystemRecording, WithoutModel};
-use crate::motion::Motions;
+use crate::model::{OutputWidth, OutputsAlone, RunsLeftOut, SystemModel, SystemRecording};
+use crate::motion::NominalMotions;
 use crate::rows::{FoundSets, SetRows};
 use crate::run::SystemRun;
 use crate::system::OutputSystem;
@@ -45,35 +44,12 @@ impl MadeSystem {
 }
 
 impl OutputSystem {
-    /// Finds the smallest sets that hold all recordings, and proves them. The factors of an arx
-    /// system are found first.
-    ///
-    /// # Guarantee
-    ///
-    /// If the model is verified: at each sample, each recorded output by itself lies in the hull of
-    /// the reachable set, which is taken from inside; directed rounding.
-    ///
-    /// # Errors
-    ///
-    /// Recordings that do not fit, outputs that no set reaches, and a program that the solver gives
-    /// up on.
-    pub fn conform(&self, runs: &[SystemRun]) -> Result<MadeSystem> {
-        if self.description.kind == SystemKind::Arx {
-            return arx::conform(self, runs);
-        }
-        let runs = self.with_past(runs)?;
-        let has_halves = !self.description.parameters.is_empty() && runs.len() > 1;
-        let half = |runs: &[SystemRun]| self.fitted(runs)?.half_left_out(runs);
-        let left_out = has_halves.then(|| half(&runs)).transpose()?.map(|(of, _)| of);
-        self.fitted(&runs)?.made(&runs, left_out)
-    }
-
     /// Returns what every second recording needs of the sets that the others give, and the mean
     /// widths of these, times what is needed on average. The largest need is too much a matter of
     /// luck to choose by.
     pub(crate) fn half_left_out(&self, runs: &[SystemRun]) -> Result<(RunsLeftOut, f64)> {
         let weights = self.weights(runs);
-        let motions = Motions::new(self, runs)?;
+        let motions = NominalMotions::new(self, runs)?;
         let rows = SetRows::new(self, &motions);
         let kept: Vec<usize> = (0..runs.len()).step_by(2).collect();
         let sets = rows.smallest(&kept, &weights)?.sets;
@@ -93,7 +69,7 @@ impl OutputSystem {
         left_out: Option<RunsLeftOut>,
     ) -> Result<MadeSystem> {
         let weights = self.weights(runs);
-        let motions = Motions::new(self, runs)?;
+        let motions = NominalMotions::new(self, runs)?;
         let rows = SetRows::new(self, &motions);
         let all: Vec<usize> = (0..runs.len()).collect();
         let found = rows.smallest(&all, &weights)?;
@@ -174,7 +150,7 @@ impl OutputSystem {
         runs: &[SystemRun],
         weights: &[f64],
         (own, start_samples): (f64, usize),
-    ) -> Result<Option<WithoutModel>> {
+    ) -> Result<Option<OutputsAlone>> {
         let p = self.outputs();
         let has_past = matches!(
             self.description.start,
@@ -183,7 +159,7 @@ impl OutputSystem {
         let goes_on = has_past || start_samples > 1;
         let held = (false, "each output stays where it was");
         let going = (true, "each output goes on as the samples before tell");
-        let mut best: Option<WithoutModel> = None;
+        let mut best: Option<OutputsAlone> = None;
         for (goes_on, how) in [held, going].into_iter().filter(|(going, _)| goes_on || !going) {
             let start = (goes_on && !has_past).then_some(NominalStartRule::Samples(start_samples));
             let system = Self::new(self.held(goes_on, start))?;
@@ -201,19 +177,19 @@ impl OutputSystem {
                 }
             };
             let known: Vec<SystemRun> = runs.iter().map(known).collect();
-            let motions = Motions::new(&system, &known)?;
+            let motions = NominalMotions::new(&system, &known)?;
             let rows = SetRows::new(&system, &motions);
             let all: Vec<usize> = (0..runs.len()).collect();
             let Ok(found) = rows.smallest(&all, weights) else { continue };
             let narrower = weighted(&rows.widths(&found.sets), weights) / own;
             if best.as_ref().is_none_or(|best| narrower < best.narrower) {
-                best = Some(WithoutModel { how: how.into(), narrower });
+                best = Some(OutputsAlone { how: how.into(), narrower });
             }
         }
         Ok(best)
     }
 
-    /// Returns a system that knows nothing but the outputs, which are held or go on.
+    /// Returns a system that depends on its outputs alone, which are held or go on.
     fn held(&self, goes_on: bool, start: Option<NominalStartRule>) -> SystemDescription {
         let p = self.outputs();
         let n = if goes_on { 2 * p } else { p };
@@ -291,7 +267,7 @@ fn left_out(rows: &SetRows<'_>, found: &FoundSets, weights: &[f64]) -> Result<Ru
 
 impl RunsLeftOut {
     /// Sums up the parts of sets that recordings need which were left out.
-    fn new(motions: &Motions, needed: Vec<(usize, f64)>, is_in_turn: bool) -> Self {
+    fn new(motions: &NominalMotions, needed: Vec<(usize, f64)>, is_in_turn: bool) -> Self {
         let furthest = needed.iter().max_by(|a, b| a.1.total_cmp(&b.1)).copied();
         let (run, factor) = furthest.unwrap_or_default();
         Self {

@@ -44,7 +44,7 @@ pub struct SystemModel {
     pub outputs: Vec<OutputWidth>,
     /// The narrowest sets without a model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub without_model: Option<WithoutModel>,
+    pub without_model: Option<OutputsAlone>,
     /// What recordings need that were left out.
     pub left_out: RunsLeftOut,
     /// Over how many first samples the start of a recording is estimated; 0 if it is known.
@@ -72,10 +72,10 @@ pub struct OutputWidth {
     pub motion: f64,
 }
 
-/// Sets of a model that knows nothing but the outputs.
+/// Sets of a system that depends on its outputs alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct WithoutModel {
+pub struct OutputsAlone {
     /// What it takes the outputs to do.
     pub how: String,
     /// How many times as wide its sets are on average, each output with its weight.
@@ -90,7 +90,7 @@ pub struct RunsLeftOut {
     pub runs: usize,
     /// Whether each was left out in turn, and not every second one at once.
     pub is_in_turn: bool,
-    /// The number of those that lie in the sets of the others.
+    /// The number of left-out recordings that lie in the sets of the other recordings.
     pub inside: usize,
     /// The recording that needs the largest part of the sets of the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]

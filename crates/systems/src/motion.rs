@@ -16,10 +16,10 @@ const RANK: f64 = 1e-9;
 
 /// What of a recording a model has to hold.
 #[derive(Debug, Clone)]
-pub(crate) struct Deviations {
+pub(crate) struct RunDeviations {
     /// The name of the recording.
     pub run: String,
-    /// Its number among those with the same time between samples, from 0.
+    /// The number of its time between samples, from 0.
     pub of_step: usize,
     /// Recorded minus nominal outputs, row-major K x p, enclosed.
     pub outputs: Vec<Interval>,
@@ -36,18 +36,18 @@ pub(crate) struct StepSolutions {
 
 /// A system along recordings.
 #[derive(Debug)]
-pub(crate) struct Motions {
+pub(crate) struct NominalMotions {
     /// The solutions, one for each time between samples.
     pub solutions: Vec<StepSolutions>,
     /// The recordings.
-    pub deviations: Vec<Deviations>,
+    pub deviations: Vec<RunDeviations>,
     /// Over how many first samples starts are estimated; 0 if they are known.
     pub start_samples: usize,
     /// Whether the outputs of these samples do not tell all states.
     pub is_unobserved: bool,
 }
 
-impl Motions {
+impl NominalMotions {
     /// Solves a system along recordings.
     ///
     /// # Guarantee
@@ -71,7 +71,7 @@ impl Motions {
             let at = distinct.partition_point(|other| other < step);
             let solved = &solutions[at];
             let start = system.start(run, solved, &estimates[at])?;
-            Ok(Deviations {
+            Ok(RunDeviations {
                 run: run.name.clone(),
                 of_step: at,
                 outputs: system.deviations(run, solved, &start),
@@ -100,7 +100,7 @@ pub(crate) struct StartEstimate {
 }
 
 impl StartEstimate {
-    /// Finds how many samples are needed: those that the system gives, or twice as many as tell all
+    /// Finds how many samples are needed: as many as the system says, or twice as many as tell all
     /// states.
     fn new(system: &OutputSystem, propagation: &Propagation) -> Self {
         let (n, count) = (system.a.nrows(), propagation.grid().len());
@@ -171,7 +171,7 @@ impl OutputSystem {
     }
 
     /// Returns the inputs that act in each step, in the order of the columns of
-    /// [`propagation`](Self::propagation), and those that outputs have at each sample, K x m.
+    /// [`propagation`](Self::propagation), and the inputs of the outputs at each sample, K x m.
     fn acting_inputs(&self, run: &SystemRun, step: f64) -> (Vec<f64>, Vec<f64>) {
         let (m, count) = (self.description().inputs.len(), run.len());
         let delays = self.delays_in(step);

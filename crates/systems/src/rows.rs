@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
 use crate::form::ScaledSet;
-use crate::motion::Motions;
+use crate::motion::NominalMotions;
 use crate::system::OutputSystem;
 
 /// How often factors are raised for rounding at most.
@@ -81,7 +81,7 @@ impl OutputHull {
 #[derive(Debug)]
 pub(crate) struct SetRows<'a> {
     pub system: &'a OutputSystem,
-    pub motions: &'a Motions,
+    pub motions: &'a NominalMotions,
     /// For each time between samples, what outputs have of the generators.
     gains: Vec<OutputGains>,
     /// |F v| of each generator of V, p x their number.
@@ -89,7 +89,7 @@ pub(crate) struct SetRows<'a> {
 }
 
 impl<'a> SetRows<'a> {
-    pub(crate) fn new(system: &'a OutputSystem, motions: &'a Motions) -> Self {
+    pub(crate) fn new(system: &'a OutputSystem, motions: &'a NominalMotions) -> Self {
         let [start, disturbance, noise] = &system.forms;
         // The generators of W act on the last inputs of a solution.
         let of = |of: &crate::motion::StepSolutions| {

@@ -138,7 +138,7 @@ impl OutputSystem {
     ///
     /// # Errors
     ///
-    /// [`Error::Times`] where they are not even, or not those of a discrete system.
+    /// [`Error::Times`] where they are not even, or a discrete system has other times.
     pub(crate) fn step_of(&self, run: &SystemRun) -> Result<f64> {
         let wrong = |problem| Error::Times { run: run.name.clone(), problem };
         let Some(step) = self.description().step else {

@@ -12,7 +12,7 @@ use crate::description::{
     SystemDescription, SystemKind, SystemParameter,
 };
 use crate::error::{Error, Result};
-use crate::form::SetForm;
+use crate::form::GeneratorForm;
 
 /// Names that formulas have for constants.
 const CONSTANTS: [&str; 6] = ["e", "E", "PI", "π", "TAU", "τ"];
@@ -29,7 +29,7 @@ pub struct OutputSystem {
     pub(crate) d: DMatrix<f64>,
     pub(crate) f: DMatrix<f64>,
     /// X0, W and V.
-    pub(crate) forms: [SetForm; 3],
+    pub(crate) forms: [GeneratorForm; 3],
     /// The delay of each input, s.
     pub(crate) delays: Vec<f64>,
 }
@@ -102,7 +102,7 @@ impl OutputSystem {
         let f = f.unwrap_or(DMatrix::identity(p, p));
         let set = |given: &Option<SetDescription>, default: SimpleSet, dimension, name| {
             let default = SetDescription::Simple(default);
-            SetForm::new(given.as_ref().unwrap_or(&default), dimension, name)
+            GeneratorForm::new(given.as_ref().unwrap_or(&default), dimension, name)
         };
         let sets = &description.sets;
         let mut forms = [
@@ -138,7 +138,7 @@ impl OutputSystem {
             return Err("X0 and W of an arx system are found; leave them out".into());
         }
         let none = || DMatrix::zeros(0, 0);
-        let form = || SetForm::new(&SetDescription::Simple(SimpleSet::None), 0, "");
+        let form = || GeneratorForm::new(&SetDescription::Simple(SimpleSet::None), 0, "");
         let forms = [form()?, form()?, form()?];
         check_lists(&description)?;
         let [a, b, e, c, d, f] = [none(), none(), none(), none(), none(), none()];

@@ -4,7 +4,7 @@ use reachtube_scalar::Interval;
 
 use crate::error::{Error, Result};
 use crate::model::SystemModel;
-use crate::motion::Motions;
+use crate::motion::NominalMotions;
 use crate::rows::SetRows;
 use crate::run::SystemRun;
 use crate::system::OutputSystem;
@@ -60,10 +60,10 @@ impl SystemModel {
     pub fn reach(&self, runs: &[SystemRun]) -> Result<Vec<OutputTube>> {
         let system = self.system()?;
         let runs = system.with_past(runs)?;
-        let motions = Motions::new(&system, &runs)?;
+        let motions = NominalMotions::new(&system, &runs)?;
         let rows = SetRows::new(&system, &motions);
         let p = system.outputs();
-        let of = |(run, own): (&SystemRun, &crate::motion::Deviations)| {
+        let of = |(run, own): (&SystemRun, &crate::motion::RunDeviations)| {
             let (mut bounds, mut nominal) = ([Vec::new(), Vec::new()], Vec::new());
             for (at, (recorded, deviation)) in run.outputs.iter().zip(&own.outputs).enumerate() {
                 let hull = rows.hull(own.of_step, at / p, at % p, &self.sets);

@@ -103,7 +103,7 @@ fn options_of_robots_are_refused() {
         ("conform --system lag.toml --data drives --torque motor", "leave --torque"),
         ("conform --system none.toml --data drives", "none.toml: cannot read"),
         ("conform --system drives/drive_0.csv --data drives", "drive_0.csv: TOML parse error"),
-        ("conform --data drives", "--system"),
+        ("conform --data drives", "--robot <ROBOT>"),
         ("reach --out reach", "--model <FILE>"),
     ] {
         let run = lab.run(command).exits(2);

@@ -84,7 +84,7 @@ mod tests {
         assert!(gains.changing.iter().all(|matrix| matrix[(0, 0)].width() < 1e-13));
     }
 
-    /// Seen through the identity, the gains are those of the states.
+    /// Seen through the identity, the gains are gains of the states.
     #[test]
     fn states_are_outputs_too() {
         let (a, b) = (dmatrix![0.0, 1.0; -9.0, -0.2], dmatrix![0.0, 0.3; 1.0, 0.1]);

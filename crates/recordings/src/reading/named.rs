@@ -126,12 +126,12 @@ pub fn read_named(
     let one = |at: usize| table.values(&[at]);
     let own_times = time.filter(|_| is_counted).map(|at| one(moved(at)));
     let numbers = run.map(|at| one(moved(at)));
-    let split = Split { path, table: &table, numbers, own_times, step, per_second };
+    let split = NamedRows { path, table: &table, numbers, own_times, step, per_second };
     split.runs([&required, &optional]).map(|runs| (runs, sha256))
 }
 
 /// A table that is divided into runs.
-struct Split<'a> {
+struct NamedRows<'a> {
     path: &'a Path,
     table: &'a Table,
     /// The column `run`.
@@ -142,7 +142,7 @@ struct Split<'a> {
     per_second: i128,
 }
 
-impl Split<'_> {
+impl NamedRows<'_> {
     fn runs(&self, [required, optional]: [&[usize]; 2]) -> Result<Vec<NamedRun>, Vec<Defect>> {
         let number = |row: usize| self.numbers.as_ref().map(|all| all[row]);
         let all: Vec<usize> = (0..self.table.len()).collect();

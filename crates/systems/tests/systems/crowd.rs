@@ -64,7 +64,7 @@ fn a_common_factor_is_the_least_that_a_check_accepts() {
     assert!((scale[0] - high).abs() < 1e-11, "{} {high}", scale[0]);
 }
 
-/// Motions under disturbances in the sets lie in the sets, and some reach near their faces.
+/// NominalMotions under disturbances in the sets lie in the sets, and some reach near their faces.
 #[test]
 fn a_million_motions_in_the_sets_lie_inside() {
     let (system, runs) = (walkers(3), crowd(40, 3));
