@@ -6,7 +6,7 @@ model encloses them (`conform`), check other recordings (`check`), compute reach
 draw a page (`report`), enclose stops (`stop`), decide whether links stay clear of obstacles
 (`verify`), and watch a running robot (`monitor`). `identify` makes the robot from
 recordings, `excite` the motions for it, `abstract` models of any order, and `flowpipe` reachable
-sets of your own system.
+sets of your own system. `System` is a linear system that is seen through its outputs.
 """
 
 from . import errors, fleet, io, plot
@@ -28,6 +28,7 @@ from ._reachtube import version as _version
 from ._recordings import Recordings, Run
 from ._robot import Robot
 from ._stop import AnnexRow, RecordedStop, StopStudy, WorstStop, stop
+from ._system import OutputTube, System, SystemCheck, SystemModel
 from ._verify import (
     Clearance,
     Margin,
@@ -73,6 +74,7 @@ __all__ = [
     "ModelFileError",
     "Monitor",
     "MotionVerdict",
+    "OutputTube",
     "Polynomial",
     "ReachableSet",
     "ReachtubeError",
@@ -85,6 +87,9 @@ __all__ = [
     "SettingError",
     "StopStudy",
     "StopTrigger",
+    "System",
+    "SystemCheck",
+    "SystemModel",
     "Verification",
     "Witness",
     "WitnessStop",

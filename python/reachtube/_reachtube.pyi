@@ -19,18 +19,24 @@ __all__ = [
     "check",
     "check_findings",
     "check_model",
+    "check_runs",
+    "check_system",
     "conform",
+    "conform_system",
     "cut",
     "excite",
     "flowpipe",
+    "given_system",
     "identify",
     "model",
     "model_findings",
     "model_report",
     "model_schema",
+    "parse_system",
     "prepare",
     "prepared",
     "reach",
+    "reach_runs",
     "read_log",
     "report",
     "stop",
@@ -308,3 +314,14 @@ def verify(
     in_memory: tuple[str, Source] | None = None,
     progress: _Progress = None,
 ) -> str: ...
+
+_Recorded: TypeAlias = tuple[str, _Array, _Array, _Array, list[float] | None]
+
+def check_system(description: str) -> None: ...
+def conform_system(description: str, recorded: Sequence[_Recorded]) -> tuple[str, str]: ...
+def given_system(description: str) -> str: ...
+def parse_system(text: str, origin: str) -> str: ...
+def check_runs(model: str, recorded: Sequence[_Recorded]) -> str: ...
+def reach_runs(
+    model: str, recorded: Sequence[_Recorded]
+) -> list[tuple[_Array, _Array, _Array]]: ...

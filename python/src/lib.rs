@@ -21,6 +21,7 @@ mod prepare;
 mod recordings;
 mod robot;
 mod safety;
+mod systems;
 mod watched;
 
 use pyo3::prelude::*;
@@ -57,6 +58,10 @@ mod _reachtube {
     use crate::robot::NativeRobot;
     #[pymodule_export]
     use crate::safety::{stop, verify};
+    #[pymodule_export]
+    use crate::systems::{
+        check_runs, check_system, conform_system, given_system, parse_system, reach_runs,
+    };
     #[pymodule_export]
     use crate::version;
 }

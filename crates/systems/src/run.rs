@@ -1,8 +1,10 @@
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
+use reachtube_files::hex;
 use reachtube_reach::TimeGrid;
 use reachtube_recordings::{NamedColumns, NamedRun, csv_files, read_named};
+use sha2::{Digest, Sha256};
 
 use crate::description::SystemKind;
 use crate::error::{Error, Result};
@@ -29,6 +31,31 @@ pub struct SystemRun {
 }
 
 impl SystemRun {
+    /// Returns a run of numbers in memory: times (K), inputs (K x m) and outputs (K x p), both
+    /// row-major, and the states at the first sample (N), if they are known. The first time becomes
+    /// 0, and the SHA-256 is of the numbers.
+    #[must_use]
+    pub fn of_numbers(
+        name: impl Into<String>,
+        times: Vec<f64>,
+        inputs: Vec<f64>,
+        outputs: Vec<f64>,
+        states: Option<Vec<f64>>,
+    ) -> Self {
+        let mut digest = Sha256::new();
+        let all = times.iter().chain(&inputs).chain(&outputs).chain(states.iter().flatten());
+        all.for_each(|number| digest.update(number.to_le_bytes()));
+        let first = times.first().copied().unwrap_or_default();
+        Self {
+            name: name.into(),
+            times: times.iter().map(|time| time - first).collect(),
+            inputs,
+            outputs,
+            states,
+            sha256: hex(&digest.finalize()),
+        }
+    }
+
     /// Returns the number of samples K.
     #[must_use]
     pub fn len(&self) -> usize {

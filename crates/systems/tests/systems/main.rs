@@ -18,14 +18,7 @@ fn system(text: &str) -> OutputSystem {
 /// Returns a run of samples that are one time apart.
 fn run(name: &str, step: f64, inputs: &[f64], outputs: &[f64], width: usize) -> SystemRun {
     let times = (0..outputs.len() / width).map(|k| k as f64 * step).collect();
-    SystemRun {
-        name: name.into(),
-        times,
-        inputs: inputs.to_vec(),
-        outputs: outputs.to_vec(),
-        states: None,
-        sha256: String::new(),
-    }
+    SystemRun::of_numbers(name, times, inputs.to_vec(), outputs.to_vec(), None)
 }
 
 /// Reads a description, and returns what is wrong with it.
