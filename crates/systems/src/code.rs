@@ -7,6 +7,14 @@ reachtube_finding::codes! {
         WiderThanMotion = "wider-than-motion",
         /// There are too few recordings to say anything of others.
         FewMotions = "few-motions",
+        /// A parameter is at a bound.
+        AtBound = "at-bound",
+        /// A recording is there twice.
+        Copies = "copies",
+        /// A parameter is at a bound.
+        AtBound = "at-bound",
+        /// A recording is there twice.
+        Copies = "copies",
         /// Outputs do not tell all states.
         Unobserved = "unobserved",
     }

@@ -6,6 +6,7 @@ mod code;
 mod conform;
 mod description;
 mod error;
+mod findings;
 mod form;
 mod identify;
 mod make;

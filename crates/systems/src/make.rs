@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use reachtube_finding::{Finding, Severity};
-use reachtube_scalar::number::significant;
+use reachtube_finding::Finding;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::code::Code;
 use crate::description::{
     BoxCentre, MatrixEntry, NamedSignal, NominalStartRule, SetDescriptions, SystemDescription,
     SystemKind,
 };
 use crate::error::Result;
+use crate::findings::against;
 use crate::model::{OutputWidth, OutputsAlone, RunsLeftOut, SystemModel, SystemRecording};
 use crate::motion::NominalMotions;
 use crate::rows::{FoundSets, SetRows};
@@ -98,12 +97,7 @@ impl OutputSystem {
             recordings: recordings.collect(),
             ..SystemModel::new(self.description.clone(), found.sets)
         };
-        let mut findings = against(&model);
-        if motions.is_unobserved {
-            let text = "The first samples of the outputs do not tell all states; the others start \
-                        at 0. Give columns of all states, or set start.";
-            findings.push(Finding::new(Severity::Warning, Code::Unobserved, text));
-        }
+        let findings = against(&model, runs, motions.is_unobserved);
         Ok(MadeSystem { model: model.sealed(), findings })
     }
 
@@ -278,32 +272,4 @@ impl RunsLeftOut {
             factor: Some(factor).filter(|factor| factor.is_finite()),
         }
     }
-}
-
-/// Returns what speaks against a model.
-fn against(model: &SystemModel) -> Vec<Finding> {
-    let mut found = Vec::new();
-    if let Some(without) = model.without_model.as_ref().filter(|of| of.narrower <= 1.0) {
-        let text = format!(
-            "Without a model, where {}, sets are {} times as wide, so the system adds nothing; \
-             look at its matrices, units and delays, and at the inputs.",
-            without.how,
-            significant(without.narrower, 2)
-        );
-        found.push(Finding::new(Severity::Warning, Code::NotNarrower, text));
-    }
-    for output in model.outputs.iter().filter(|output| output.mean > output.motion) {
-        let text = format!(
-            "The set of {} is {} wide on average, and the output moves by {} in all recordings.",
-            output.name,
-            significant(output.mean, 2),
-            significant(output.motion, 2)
-        );
-        found.push(Finding::new(Severity::Warning, Code::WiderThanMotion, text));
-    }
-    if model.recordings.len() < 3 {
-        let text = "With fewer than 3 recordings, the sets describe these only; record more.";
-        found.push(Finding::new(Severity::Warning, Code::FewMotions, text));
-    }
-    found
 }

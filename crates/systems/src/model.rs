@@ -36,7 +36,8 @@ pub struct SystemModel {
     pub system: SystemDescription,
     /// Its sets.
     pub sets: SystemSets,
-    /// The integral over time of the widths of the outputs, each times its weight.
+    /// The integral over time of the widths that the sets give the outputs which were found, each
+    /// times its weight.
     pub cost: f64,
     /// No sets cost less, to the tolerance of the solver.
     pub lower_bound: f64,

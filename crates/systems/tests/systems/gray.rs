@@ -47,6 +47,20 @@ fn a_lag_with_a_delay_of_parts_of_a_sample_is_found() {
 }
 
 #[test]
+fn parameters_at_bounds_and_copies_are_named() {
+    let mut runs = runs();
+    let near = system(&LAG.replace("low = 0.05, high = 2.0", "low = 0.3, high = 2.0"));
+    let found = near.conform(&runs).unwrap();
+    let of = |found: &reachtube_systems::MadeSystem| -> Vec<String> {
+        found.findings.iter().map(|finding| finding.text.clone()).collect()
+    };
+    assert!(of(&found)[0].starts_with("The parameter tau is at its bound 0.3"), "{:?}", of(&found));
+    runs.push(reachtube_systems::SystemRun { name: "again".into(), ..runs[1].clone() });
+    let found = system(LAG).conform(&runs).unwrap();
+    assert!(of(&found)[0].starts_with("again is a copy of run 1. "), "{:?}", of(&found));
+}
+
+#[test]
 fn wrong_parameters_are_refused() {
     for (from, to, expected) in [
         ("'-1 / tau'", "'-1 / ta'", "ta is no parameter; there are gain, late, tau"),
