@@ -11,10 +11,6 @@ reachtube_finding::codes! {
         AtBound = "at-bound",
         /// A recording is there twice.
         Copies = "copies",
-        /// A parameter is at a bound.
-        AtBound = "at-bound",
-        /// A recording is there twice.
-        Copies = "copies",
         /// Outputs do not tell all states.
         Unobserved = "unobserved",
     }

@@ -74,7 +74,7 @@ fn copies(runs: &[SystemRun]) -> Option<Finding> {
     let first = copies.next()?;
     let more = match copies.count() {
         0 => String::new(),
-        more => format!(", and so are {more} more of others"),
+        more => format!("; {more} more are copies, too"),
     };
     let text = format!(
         "{first}{more}. A copy lies in sets of the recording that it is a copy of, so that fewer \
