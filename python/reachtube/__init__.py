@@ -28,7 +28,8 @@ from ._reachtube import version as _version
 from ._recordings import Recordings, Run
 from ._robot import Robot
 from ._stop import AnnexRow, RecordedStop, StopStudy, WorstStop, stop
-from ._system import OutputTube, System, SystemCheck, SystemModel
+from ._system import System
+from ._system_model import OutputTube, SystemCheck, SystemModel
 from ._verify import (
     Clearance,
     Margin,

@@ -60,7 +60,8 @@ mod _reachtube {
     use crate::safety::{stop, verify};
     #[pymodule_export]
     use crate::systems::{
-        check_runs, check_system, conform_system, given_system, parse_system, reach_runs,
+        check_runs, check_system, conform_system, given_system, open_system, parse_system,
+        reach_runs,
     };
     #[pymodule_export]
     use crate::version;

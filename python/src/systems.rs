@@ -28,6 +28,15 @@ fn described(description: &str) -> Result<OutputSystem> {
     Ok(OutputSystem::new(description)?)
 }
 
+/// Reads a system file; returns JSON.
+#[pyfunction]
+pub(crate) fn open_system(py: Python<'_>, path: &str) -> PyResult<String> {
+    let system = OutputSystem::open(path.as_ref());
+    let system = system.map_err(|error| Failure::from(error).raised(py))?;
+    serde_json::to_string(system.description())
+        .map_err(|error| Failure::json("the system", &error).raised(py))
+}
+
 /// Checks a description, in JSON.
 #[pyfunction]
 pub(crate) fn check_system(py: Python<'_>, description: &str) -> PyResult<()> {

@@ -1,0 +1,245 @@
+"""Models of linear systems: the smallest sets of recordings, checks, and reachable outputs."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _reachtube
+from ._arrays import Array, frozen, numbers
+from ._files import write_new
+from ._findings import Finding
+from ._record import Record
+from ._values import Values
+from .errors import ReachtubeError, SettingError
+
+
+class SystemModel(Record):
+    """A system with the smallest sets for which its reachable outputs hold recordings."""
+
+    __slots__ = ()
+
+    @property
+    def _model(self) -> dict[str, Any]:
+        model: dict[str, Any] = json.loads(self._content["model"])
+        return model
+
+    @classmethod
+    def _of(cls, text: str, said: str = "{}") -> SystemModel:
+        """Return the model of a file's text, with findings and summary, if any."""
+        return cls(json.dumps({"model": text, **json.loads(said)}))
+
+    @property
+    def verified(self) -> bool:
+        """Whether every recorded output was proved to lie in the reachable set."""
+        return bool(self._model["verified"])
+
+    @property
+    def useful(self) -> bool:
+        """Whether it is verified, and narrower than outputs that are held or go on."""
+        without = self._model.get("without_model")
+        return self.verified and (without is None or without["narrower"] > 1.0)
+
+    @property
+    def sets(self) -> dict[str, Any]:
+        """X0, W and V, each with ``centre``, ``generators`` and ``scale``."""
+        return dict(self._model["sets"])
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What spoke against the model when it was made; a file has none of it."""
+        return [Finding._of(dict(finding)) for finding in self._content.get("findings", [])]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the model's file as a new dictionary."""
+        return self._model
+
+    def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
+        """Write the model's file, whole or not at all.
+
+        Parameters
+        ----------
+        path
+            The file, in JSON.
+        force
+            Whether a file that exists is replaced.
+        """
+        write_new(Path(path), self._content["model"], force=force)
+
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> SystemModel:
+        """Read a file that `save` or ``reachtube conform --system --out`` wrote.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Returns
+        -------
+        SystemModel
+        """
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise ReachtubeError(f"{path}: {error}; give a file that `conform` wrote") from None
+        return cls._of(_reachtube.parse_system(text, fspath(path)))
+
+    def check(self, runs: Sequence[Any]) -> SystemCheck:
+        """Compare other recordings with the model.
+
+        Parameters
+        ----------
+        runs
+            The recordings, as for `System.conform`.
+
+        Returns
+        -------
+        SystemCheck
+            It is true if every output was proved to lie in the reachable set.
+        """
+        recorded = recorded_runs(self._model["system"], runs)
+        return SystemCheck(_reachtube.check_runs(self._content["model"], recorded))
+
+    def reach(self, runs: Sequence[Any]) -> list[OutputTube]:
+        """Compute the reachable outputs along recordings.
+
+        Parameters
+        ----------
+        runs
+            The recordings, as for `System.conform`.
+
+        Returns
+        -------
+        list of OutputTube
+        """
+        system = self._model["system"]
+        recorded = recorded_runs(system, runs)
+        names = tuple(map(name_of, system["outputs"]))
+        tubes = _reachtube.reach_runs(self._content["model"], recorded)
+        # A motion that starts from its past has fewer samples.
+        return [
+            OutputTube(names, frozen(times[len(times) - len(low) :]), *map(frozen, (at, low, high)))
+            for (_, times, *_), (at, low, high) in zip(recorded, tubes, strict=True)
+        ]
+
+    def __bool__(self) -> bool:
+        return self.useful
+
+    def __str__(self) -> str:
+        return str(self._content.get("summary", repr(self)))
+
+    def __repr__(self) -> str:
+        word = "conformant" if self.verified else "NOT PROVED conformant"
+        if self.verified and not self.useful:
+            word += ", but vacuous"
+        return f"<SystemModel {word}: {len(self._model['recordings'])} recordings>"
+
+
+class SystemCheck(Record):
+    """The answer of a check: whether recorded outputs lie in the reachable set."""
+
+    __slots__ = ()
+
+    @property
+    def conformant(self) -> bool:
+        """Whether every output at every sample was proved to lie in the set."""
+        return bool(self._content["conformant"])
+
+    @property
+    def outside(self) -> int:
+        """The number of outputs that were not proved to lie in the set."""
+        return int(self._content["outside"])
+
+    @property
+    def runs(self) -> list[dict[str, Any]]:
+        """For each recording the part of the sets that it needs, with output and time."""
+        return list(self._content["runs"])
+
+    def __bool__(self) -> bool:
+        return self.conformant
+
+    def __repr__(self) -> str:
+        word = "conformant" if self.conformant else "not conformant"
+        return f"<SystemCheck {word}: {self.outside} of {self._content['values']} outputs outside>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class OutputTube(Values):
+    """The reachable outputs at samples: outer bounds of their hull, with directed rounding.
+
+    Attributes
+    ----------
+    outputs
+        Names of the outputs, p.
+    t : array of shape (K,)
+        Times, s.
+    nominal : array of shape (K, p)
+        The nominal outputs.
+    lower : array of shape (K, p)
+        Lower bounds.
+    upper : array of shape (K, p)
+        Upper bounds.
+    """
+
+    outputs: tuple[str, ...]
+    t: Array
+    nominal: Array
+    lower: Array
+    upper: Array
+
+    def __repr__(self) -> str:
+        return f"<OutputTube of {', '.join(self.outputs)}: {len(self.t)} samples>"
+
+
+def name_of(signal: str | Mapping[str, str]) -> str:
+    """Return the name of a signal, which may have a unit."""
+    return signal if isinstance(signal, str) else signal["name"]
+
+
+def recorded_runs(system: Mapping[str, Any], runs: Sequence[Any]) -> list[Any]:
+    """Return recordings as the product takes them."""
+    inputs, outputs, states = (
+        [name_of(signal) for signal in system.get(key, [])]
+        for key in ("inputs", "outputs", "states")
+    )
+    recorded = []
+    for number, run in enumerate(runs, start=1):
+        missing = [name for name in (*outputs, *inputs) if name not in run]
+        if missing:
+            raise SettingError(f"run {number} has no column {', '.join(missing)}")
+        columns = {
+            name: numbers(f"{name} of run {number}", run[name]).ravel()
+            for name in ("t", *outputs, *inputs, *states)
+            if name in run
+        }
+        count = len(columns[outputs[0]])
+        if wrong := sorted(name for name, column in columns.items() if len(column) != count):
+            raise SettingError(f"run {number}: {', '.join(wrong)} has not {count} samples")
+        for name, column in columns.items():
+            if not np.isfinite(column).all():
+                raise SettingError(f"{name} of run {number} is not finite at every sample")
+        if "t" not in columns and system.get("step") is None:
+            raise SettingError(f"run {number} has no times t, which a continuous system needs")
+        times: Any = columns.get("t")
+        if times is None:
+            times = np.arange(count) * float(system["step"])
+        if not (np.diff(times) > 0).all():
+            raise SettingError(f"the times of run {number} do not increase")
+
+        rows = [
+            np.column_stack([columns[name] for name in names] or [np.zeros((count, 0))])
+            for names in (inputs, outputs)
+        ]
+        known = states and all(name in columns for name in states)
+        start = [float(columns[name][0]) for name in states] if known else None
+        recorded.append((f"run {number}", times, *rows, start))
+    if not recorded:
+        raise SettingError("no recordings are given")
+    return recorded
