@@ -56,6 +56,9 @@ impl GeneratorForm {
             let found = wrong.len();
             return Err(format!("{name} needs {dimension} entries in each generator, not {found}"));
         }
+        if radius.iter().any(|radius| *radius < 0.0) {
+            return Err(format!("{name} has a radius below 0"));
+        }
         if !columns.iter().flatten().all(|entry| entry.is_finite()) {
             return Err(format!("{name} has an entry that is not finite"));
         }

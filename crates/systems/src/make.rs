@@ -154,6 +154,9 @@ impl OutputSystem {
         let held = (false, "each output stays where it was");
         let going = (true, "each output goes on as the samples before tell");
         let mut best: Option<OutputsAlone> = None;
+        if own == 0.0 {
+            return Ok(best);
+        }
         for (goes_on, how) in [held, going].into_iter().filter(|(going, _)| goes_on || !going) {
             let start = (goes_on && !has_past).then_some(NominalStartRule::Samples(start_samples));
             let system = Self::new(self.held(goes_on, start))?;

@@ -64,6 +64,7 @@ impl NominalMotions {
             let count = own.map(|(run, _)| run.len()).max().unwrap_or(0);
             Ok(StepSolutions { step: *step, propagation: system.propagation(*step, count)? })
         };
+        system.refuse_long_delays(runs)?;
         let solutions = distinct.iter().map(solution).collect::<Result<Vec<_>>>()?;
         let estimates: Vec<StartEstimate> =
             solutions.iter().map(|of| StartEstimate::new(system, &of.propagation)).collect();
@@ -135,6 +136,21 @@ impl StartEstimate {
 }
 
 impl OutputSystem {
+    /// Refuses an input that acts after the end of all recordings.
+    fn refuse_long_delays(&self, runs: &[SystemRun]) -> Result<()> {
+        let longest = runs.iter().filter_map(|run| run.times.last().copied()).fold(0.0, f64::max);
+        let mut delays = self.description().inputs.iter().zip(&self.delays);
+        let Some((input, delay)) = delays.find(|(_, delay)| **delay >= longest) else {
+            return Ok(());
+        };
+        let problem = format!(
+            "the delay of {} is {delay} s, and no recording is longer than {longest} s; give it \
+             in s",
+            input.name()
+        );
+        Err(Error::System { file: None, problem })
+    }
+
     /// Returns where a recording starts, if that need not be estimated.
     fn known_start(&self, run: &SystemRun) -> Option<Vec<f64>> {
         match &self.description().start {

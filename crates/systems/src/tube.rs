@@ -10,7 +10,7 @@ use crate::run::SystemRun;
 use crate::system::OutputSystem;
 
 /// Most samples of a motion that is not recorded.
-const MOST_SAMPLES: f64 = 1e7;
+const MOST_SAMPLES: f64 = 1e6;
 
 /// The reachable outputs along a recording, at its samples.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,7 +103,7 @@ impl SystemModel {
         };
         let count = (until / step + 1e-9).floor() + 1.0;
         if !(2.0..=MOST_SAMPLES).contains(&count) {
-            return Err(wrong("its motion has fewer than 2 samples, or more than 1e7"));
+            return Err(wrong("its motion has fewer than 2 samples, or more than 1e6"));
         }
         let count = count as usize;
         let run = SystemRun {

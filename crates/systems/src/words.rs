@@ -27,11 +27,15 @@ impl MadeSystem {
         };
         let samples: usize = model.recordings.iter().map(|of| of.samples).sum();
         let narrower = model.without_model.as_ref().map_or(String::new(), |of| {
-            format!("; {} times narrower than without a model", significant(of.narrower, 3))
+            let (times, word) = match of.narrower {
+                narrower if narrower > 1.0 => (narrower, "narrower"),
+                wider => (wider.recip(), "wider"),
+            };
+            format!("; {} times {word} than without a model", significant(times, 3))
         });
+        let proved = if model.verified { ", proved with directed rounding" } else { "" };
         format!(
-            "{word}: each output by itself, at {samples} samples of {}, proved with directed \
-             rounding{narrower}",
+            "{word}: each output by itself, at {samples} samples of {}{proved}{narrower}",
             counted(model.recordings.len(), "recording")
         )
     }

@@ -29,6 +29,7 @@ fn wrong_descriptions_are_refused_with_what_is_wrong() {
         (&format!("{DECAY}[sets]\nW = {{ fixed = true }}"), "W needs generators or a radius"),
         (&format!("{DECAY}[sets]\nW = {{ generators = [[1, 2]] }}"), "W needs 1 entries"),
         (&format!("{DECAY}[sets]\nU = 'box'"), "unknown field `U`"),
+        (&format!("{DECAY}[sets]\nW = {{ radius = [-1] }}"), "W has a radius below 0"),
         ("kind = 'arx'\nstep = 1\noutputs = ['y']\nA = [[1]]", "leave them out"),
     ] {
         let found = wrong(text);
@@ -113,4 +114,21 @@ fn a_model_file_is_read_back_and_changes_are_noticed() {
     assert!(error.contains("changed after it was written"), "{error}");
     let other = SystemModel::parse("{\"format\": \"x\"}", Path::new("m.json")).unwrap_err();
     assert!(other.to_string().contains("reachtube-system-model"));
+}
+
+#[test]
+fn an_input_that_never_acts_is_refused() {
+    let late = system(&format!("{DECAY}inputs = ['u']\nB = [[1]]\ndelay = {{ u = 500 }}"));
+    let error = late.conform(&[run("one", 0.5, &[0.0; 3], &[1.0, 0.5, 0.25], 1)]).unwrap_err();
+    assert!(error.to_string().contains("the delay of u is 500 s, and no recording is longer"));
+}
+
+#[test]
+fn a_system_without_sets_is_not_called_proved() {
+    let none = system(&format!("{DECAY}[sets]\nX0 = 'none'\nW = 'none'"));
+    let made = none.conform(&[run("one", 0.5, &[], &[1.0, 0.75, 0.25], 1)]).unwrap();
+    assert!(!made.model.verified && made.model.without_model.is_none());
+    let verdict = made.verdict();
+    assert!(verdict.starts_with("NOT PROVED") && !verdict.contains("directed"), "{verdict}");
+    assert!(SystemModel::parse(&made.model.to_json(), Path::new("m.json")).is_ok());
 }
