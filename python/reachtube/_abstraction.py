@@ -11,10 +11,10 @@ import numpy.typing as npt
 
 from . import _reachtube
 from ._arrays import Array, batch, finite, numbers, whole
-from ._files import write_new
+from ._files import read_text, write_new
 from ._progress import Progress, shown
 from ._robot import Robot, native_of
-from .errors import ReachtubeError, SettingError
+from .errors import SettingError
 
 
 #: Exponents are bytes.
@@ -53,10 +53,7 @@ class Abstraction:
         ModelFileError
             For another file, one of another version, or one that was changed.
         """
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise ReachtubeError(f"{path}: {error}; give a file that `abstract` wrote") from None
+        text = read_text(path, "abstract")
         return cls(_reachtube.Abstraction.parse(text, fspath(path)))
 
     def save(self, path: str | PathLike[str], *, force: bool = False) -> None:

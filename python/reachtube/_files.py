@@ -9,6 +9,14 @@ from pathlib import Path
 from .errors import ReachtubeError
 
 
+def read_text(path: str | os.PathLike[str], command: str) -> str:
+    """Return the text of a file that a command wrote."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise ReachtubeError(f"{path}: {error}; give a file that `{command}` wrote") from None
+
+
 def check_new(path: Path, *, force: bool) -> None:
     """Check that nothing of the user's is replaced."""
     if path.exists() and not force:

@@ -13,7 +13,7 @@ from ._arrays import Array, array_of, names
 from ._box import Box
 from ._bytes import checked
 from ._check import Check
-from ._files import write_new
+from ._files import read_text, write_new
 from ._findings import Finding, Report, findings_of
 from ._logs import Logs, native_of_logs
 from ._progress import Progress, shown
@@ -61,10 +61,7 @@ class Model(Record):
         ModelFileError
             For another file, one of another version, or one that was changed.
         """
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise ReachtubeError(f"{path}: {error}; give a file that `conform` wrote") from None
+        text = read_text(path, "conform")
         _reachtube.check_model(text, fspath(path))
         return cls(text)
 

@@ -13,11 +13,11 @@ import numpy as np
 
 from . import _reachtube
 from ._arrays import Array, frozen, numbers
-from ._files import write_new
+from ._files import read_text, write_new
 from ._findings import Finding
 from ._record import Record
 from ._values import Values
-from .errors import ReachtubeError, SettingError
+from .errors import SettingError
 
 
 class SystemModel(Record):
@@ -85,10 +85,7 @@ class SystemModel(Record):
         -------
         SystemModel
         """
-        try:
-            text = Path(path).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            raise ReachtubeError(f"{path}: {error}; give a file that `conform` wrote") from None
+        text = read_text(path, "conform")
         return cls._of(_reachtube.parse_system(text, fspath(path)))
 
     def check(self, runs: Sequence[Any]) -> SystemCheck:

@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 use reachtube::systems::{OutputSystem, SystemDescription, SystemModel, SystemRun};
+use reachtube_files::SealedFile;
 
 use crate::arrays::{Input, Output, array};
 use crate::failure::{Failure, Result};

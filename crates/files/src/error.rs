@@ -37,6 +37,14 @@ pub enum Error {
         /// The problem.
         problem: String,
     },
+    /// A file is not what it should be.
+    #[error("{}: {problem}", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what to do.
+        problem: String,
+    },
     /// A file is where a folder is needed.
     #[error("{}: this is a file, but a folder is needed; give another name", path.display())]
     NotFolder {
@@ -55,7 +63,7 @@ pub enum Error {
     },
 }
 
-crate::kinds!(Error { _ => File });
+crate::kinds!(Error { Content => Model, _ => File });
 
 /// A result of this crate.
 pub(crate) type Result<T, E = Error> = std::result::Result<T, E>;

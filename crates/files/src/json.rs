@@ -1,11 +1,7 @@
 //! JSON files that carry their format and version, in a layout that people can read.
 
-use std::path::Path;
-
 use serde::Serialize;
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
-
-use crate::read_text;
 
 /// Parses `text`, the content of a file that `command --out` wrote, and checks its format and
 /// version.
@@ -46,13 +42,6 @@ pub fn versioned(
         ));
     }
     Ok(value)
-}
-
-/// Returns what the field `format` of a JSON file says; `None` for any other file.
-#[must_use]
-pub fn format_of(path: &Path) -> Option<String> {
-    let value: serde_json::Value = serde_json::from_str(&read_text(path, "").ok()?).ok()?;
-    value["format"].as_str().map(Into::into)
 }
 
 /// Returns `value` as JSON that ends with a newline. Values nested more than three deep are on one

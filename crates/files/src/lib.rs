@@ -3,7 +3,7 @@
 //! - [`write::atomically`] writes through a temporary file beside the target.
 //! - [`write::try_at`] checks, before a long job, whether its result can be written.
 //! - [`Overwrite`] decides which existing files may be replaced.
-//! - [`json`] reads and writes versioned files.
+//! - [`json`] reads and writes versioned files; a [`SealedFile`] notices a change of its content.
 //! - [`Journal`] keeps what a long job has finished.
 //! - [`Kind`] says what an error is about.
 //! - [`schema()`] gives the JSON schema of what a type writes.
@@ -31,6 +31,7 @@ mod names;
 mod overwrite;
 mod read;
 mod schema;
+mod sealed;
 pub mod write;
 
 pub use digest::hex;
@@ -41,3 +42,4 @@ pub use names::distinct_names;
 pub use overwrite::{MARK, Overwrite, TOOL};
 pub use read::{bytes, read, read_text};
 pub use schema::{schema, schema_of_any};
+pub use sealed::{FileHead, SealedFile};

@@ -38,11 +38,6 @@ impl Order {
     fn past_inputs(self) -> usize {
         (self.delay + self.order).saturating_sub(2)
     }
-
-    /// Returns the number of the first sample whose past is known.
-    fn first(self) -> usize {
-        (self.order - 1).max(self.past_inputs())
-    }
 }
 
 /// Finds factors and sets of the order that needs the narrowest sets for recordings that are left
@@ -52,20 +47,19 @@ pub(crate) fn conform(system: &OutputSystem, runs: &[SystemRun]) -> Result<MadeS
     let longest = if has_inputs { MOST_DELAY } else { 1 };
     let orders =
         (1..=MOST_ORDER).flat_map(|order| (1..=longest).map(move |delay| Order { order, delay }));
-    let first = Order { order: MOST_ORDER, delay: longest }.first();
-    if let Some(short) = runs.iter().find(|run| run.len() < first + 2) {
-        let (samples, needed) = (short.len(), first + 2);
-        return Err(Error::Short { run: short.name.clone(), samples, needed });
+    let needed = 2 * (MOST_ORDER + longest);
+    if let Some(short) = runs.iter().find(|run| run.len() < needed) {
+        return Err(Error::Short { run: short.name.clone(), samples: short.len(), needed });
     }
     runs.iter().try_for_each(|run| system.step_of(run).map(|_| ()))?;
-    // Every order is judged by the same samples, every second recording by the others.
+    // Every second recording judges an order by the others.
     let has_halves = runs.len() > 1;
-    let most = (SAMPLES_TO_CHOOSE / runs.len()).max(4 * (first + 2));
+    let most = (SAMPLES_TO_CHOOSE / runs.len()).max(2 * needed);
     let short: Vec<SystemRun> = runs.iter().map(|run| run.before(most)).collect();
     let of_half = |order: Order, runs: &[SystemRun]| {
         let half: Vec<SystemRun> = runs.iter().step_by(2).cloned().collect();
-        let found = identified(system, if has_halves { &half } else { runs }, order, first)?;
-        found.half_left_out(&found.past_after(runs, first)).ok()
+        let found = identified(system, if has_halves { &half } else { runs }, order)?;
+        found.half_left_out(&found.with_past(runs).ok()?).ok()
     };
     let judged: Vec<(f64, Order)> =
         orders.filter_map(|order| Some((of_half(order, &short)?.1, order))).collect();
@@ -73,8 +67,8 @@ pub(crate) fn conform(system: &OutputSystem, runs: &[SystemRun]) -> Result<MadeS
     let simplest = judged.into_iter().find(|(needed, ..)| *needed <= NEARLY * best);
     let made = simplest.and_then(|(_, order)| {
         let left_out = if has_halves { of_half(order, runs)?.0 } else { RunsLeftOut::default() };
-        let found = identified(system, runs, order, first)?;
-        Some(found.made(&found.past_after(runs, first), Some(left_out)))
+        let found = identified(system, runs, order)?;
+        Some(found.with_past(runs).and_then(|runs| found.made(&runs, Some(left_out))))
     });
     made.transpose()?.ok_or_else(|| Error::System {
         file: None,
@@ -84,12 +78,7 @@ pub(crate) fn conform(system: &OutputSystem, runs: &[SystemRun]) -> Result<MadeS
 
 /// Returns the system of the factors that explain outputs best over whole motions, from the
 /// factors on that explain them best one step ahead; `None` where these are not determined.
-fn identified(
-    system: &OutputSystem,
-    runs: &[SystemRun],
-    order: Order,
-    first: usize,
-) -> Option<OutputSystem> {
+fn identified(system: &OutputSystem, runs: &[SystemRun], order: Order) -> Option<OutputSystem> {
     let [m, p] = [system.description.inputs.len(), system.outputs()];
     let width = order.order * (p + m);
     let mut normal = DMatrix::<f64>::zeros(width, width);
@@ -125,7 +114,7 @@ fn identified(
     let of = |numbers: &[f64]| {
         let made = described(system, order, &|output, j| numbers[output * width + j]);
         let made = OutputSystem::new(made).ok()?;
-        let past = made.past_after(runs, first);
+        let past = made.with_past(runs).ok()?;
         Some((made, past))
     };
     let bounds = vec![[f64::NEG_INFINITY, f64::INFINITY]; start.len()];
@@ -206,14 +195,6 @@ impl OutputSystem {
             let (samples, needed) = (short.len(), first + 2);
             return Err(Error::Short { run: short.name.clone(), samples, needed });
         }
-        Ok(self.past_after(runs, first))
-    }
-
-    /// Returns recordings from sample `first` on, with the states that their past gives.
-    fn past_after(&self, runs: &[SystemRun], first: usize) -> Vec<SystemRun> {
-        let Some(NominalStartRule::Past { outputs, inputs }) = self.description.start else {
-            return runs.to_vec();
-        };
         let [m, p] = [self.description.inputs.len(), self.outputs()];
         let of = |run: &SystemRun| {
             let past = (0..outputs).flat_map(|lag| &run.outputs[(first - lag) * p..][..p]);
@@ -221,6 +202,6 @@ impl OutputSystem {
             let states = Some(past.chain(acted).copied().collect());
             SystemRun { states, ..run.after(first) }
         };
-        runs.iter().map(of).collect()
+        Ok(runs.iter().map(of).collect())
     }
 }

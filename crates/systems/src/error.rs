@@ -80,20 +80,11 @@ pub enum Error {
         /// How far it is from the outputs that can be reached.
         off: f64,
     },
-    /// A model file is not one.
-    #[error("{}: {problem}", path.display())]
-    ModelFile {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it, and what to do.
-        problem: String,
-    },
 }
 
 reachtube_files::kinds!(Error {
     [Recordings | File | Program] => inner,
     System => Setting,
-    ModelFile => Model,
     Reach | Unreached => NoAnswer,
     _ => Recordings,
 });

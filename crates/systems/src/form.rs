@@ -111,13 +111,16 @@ impl ScaledSet {
         (0..self.centre.len()).map(of).collect()
     }
 
-    pub(crate) fn is_valid(&self, dimension: usize) -> bool {
-        let fits = self.generators.iter().all(|column| column.len() == dimension);
-        let mut entries = self.centre.iter().chain(self.generators.iter().flatten());
-        let scales = self.scale.iter().all(|scale| *scale >= 0.0 && scale.is_finite());
-        fits && scales
-            && self.centre.len() == dimension
-            && self.scale.len() == self.generators.len()
-            && entries.all(|entry| entry.is_finite())
+    /// Returns whether it is a set of a form, with numbers that are finite.
+    pub(crate) fn has_form(&self, form: &GeneratorForm) -> bool {
+        let Self { centre, generators, scale } = self;
+        let is_finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        let same = form.generators.column_iter().zip(generators);
+        generators.len() == form.generators.ncols()
+            && same.into_iter().all(|(own, column)| own.iter().eq(column))
+            && (scale.len(), centre.len()) == (generators.len(), form.generators.nrows())
+            && is_finite(centre)
+            && is_finite(scale)
+            && scale.iter().all(|scale| *scale >= 0.0)
     }
 }

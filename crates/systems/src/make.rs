@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use rayon::prelude::*;
+use reachtube_files::SealedFile;
 use reachtube_finding::Finding;
 use schemars::JsonSchema;
 use serde::Serialize;

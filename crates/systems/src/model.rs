@@ -1,14 +1,11 @@
 //! The model file of a system.
 
-use std::path::Path;
-
-use reachtube_files::{TOOL, hex, json, read_text};
+use reachtube_files::{FileHead, SealedFile};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use crate::description::SystemDescription;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::rows::SystemSets;
 use crate::system::OutputSystem;
 
@@ -147,60 +144,24 @@ impl SystemModel {
     pub fn system(&self) -> Result<OutputSystem> {
         OutputSystem::new(self.system.clone())
     }
+}
 
-    /// Reads the text of a model file. Errors name the file `origin`.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::ModelFile`], which says what is wrong.
-    pub fn parse(text: &str, origin: &Path) -> Result<Self> {
-        let wrong = |problem: String| Error::ModelFile { path: origin.into(), problem };
-        let value = json::versioned(text, FORMAT, VERSION, "conform").map_err(wrong)?;
-        let again = "give the file as `conform --out` wrote it, or run conform again";
-        let model: Self =
-            serde_json::from_value(value).map_err(|error| wrong(format!("{error}; {again}")))?;
-        if model.sha256 != model.digest() {
-            return Err(wrong(format!("its content was changed after it was written; {again}")));
+impl SealedFile for SystemModel {
+    const FORMAT: &'static str = FORMAT;
+    const VERSION: u32 = VERSION;
+    const COMMAND: &'static str = "conform";
+
+    fn head(&mut self) -> FileHead<'_> {
+        let Self { format, version, tool, sha256, .. } = self;
+        FileHead { format, version, tool, sha256 }
+    }
+
+    fn check_content(&self) -> Result<(), String> {
+        let system = self.system().map_err(|error| error.to_string())?;
+        let sets = [&self.sets.start, &self.sets.disturbance, &self.sets.noise];
+        match system.forms.iter().zip(sets).all(|(form, set)| set.has_form(form)) {
+            true => Ok(()),
+            false => Err("its sets do not fit its system".into()),
         }
-        let system = model.system().map_err(|error| wrong(format!("{error}; {again}")))?;
-        let SystemSets { start, disturbance, noise } = &model.sets;
-        let are_sound = start.is_valid(system.a.nrows())
-            && disturbance.is_valid(system.e.ncols())
-            && noise.is_valid(system.f.ncols());
-        if !are_sound {
-            return Err(wrong(format!("its sets do not fit its system; {again}")));
-        }
-        Ok(model)
-    }
-
-    /// Returns whether a file is a model of a system.
-    #[must_use]
-    pub fn is_at(path: &Path) -> bool {
-        json::format_of(path).as_deref() == Some(FORMAT)
-    }
-
-    /// Opens a model file.
-    ///
-    /// # Errors
-    ///
-    /// A file that cannot be read, and [`Error::ModelFile`].
-    pub fn open(path: &Path) -> Result<Self> {
-        Self::parse(&read_text(path, "name a file that `conform` wrote")?, path)
-    }
-
-    /// Returns the file's text: JSON, ending with a newline.
-    #[must_use]
-    pub fn to_json(&self) -> String {
-        json::to_lines(&self.clone().sealed())
-    }
-
-    pub(crate) fn sealed(self) -> Self {
-        let own = Self { format: FORMAT.into(), version: VERSION, tool: TOOL.into(), ..self };
-        Self { sha256: own.digest(), ..own }
-    }
-
-    fn digest(&self) -> String {
-        let unsealed = Self { sha256: String::new(), ..self.clone() };
-        hex(&Sha256::digest(serde_json::to_vec(&unsealed).expect("a model has string keys")))
     }
 }

@@ -67,12 +67,15 @@ impl OutputHull {
     pub(crate) fn excess(&self, deviation: Interval) -> f64 {
         let upper = add_down(self.centre.lo(), self.radius.lo());
         let lower = sub_up(self.centre.hi(), self.radius.lo());
-        sub_up(deviation.hi(), upper).max(sub_up(lower, deviation.lo()))
+        let [above, below] = [sub_up(deviation.hi(), upper), sub_up(lower, deviation.lo())];
+        // A difference that is not a number proves nothing.
+        if above.is_nan() || below.is_nan() { f64::INFINITY } else { above.max(below) }
     }
 
-    /// Returns the part of the radius that a deviation needs; 0 where that is nothing.
+    /// Returns the part of the radius that a deviation needs, apart from rounding; 0 where that is
+    /// nothing.
     pub(crate) fn needed(&self, deviation: Interval) -> f64 {
-        let off = (deviation - self.centre).mag();
+        let off = (deviation - self.centre).mig();
         if off == 0.0 { 0.0 } else { off / self.radius.lo() }
     }
 }

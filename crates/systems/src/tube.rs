@@ -1,5 +1,6 @@
 use std::fmt::Write;
 
+use reachtube_files::SealedFile;
 use reachtube_scalar::Interval;
 
 use crate::error::{Error, Result};
@@ -34,8 +35,8 @@ impl SystemModel {
     pub fn given(system: &OutputSystem) -> Result<Self> {
         let [start, disturbance, noise] = &system.forms;
         if system.forms.iter().any(|form| form.factors > 0) {
-            let problem = "its sets are to be found; give X0, W and V with fixed = true, or as \
-                           \"none\", or find them with `conform --system` first";
+            let problem = "the sets of the system are to be found; give X0, W and V with fixed = \
+                           true, or as \"none\", or find them with `conform --system` first";
             return Err(Error::System { file: None, problem: problem.into() });
         }
         let sets = crate::rows::SystemSets {
@@ -92,7 +93,9 @@ impl SystemModel {
         let system = self.system()?;
         let wrong = |problem: &str| Error::System { file: None, problem: problem.into() };
         if system.fixed_start().is_none() {
-            return Err(wrong("it has no start; write start = { at = [..] }, or give recordings"));
+            return Err(wrong(
+                "the system has no start; write start = { at = [..] }, or give recordings",
+            ));
         }
         let step = match (self.system.step, step) {
             (Some(step), None) | (None, Some(step)) => step,
@@ -103,7 +106,7 @@ impl SystemModel {
         };
         let count = (until / step + 1e-9).floor() + 1.0;
         if !(2.0..=MOST_SAMPLES).contains(&count) {
-            return Err(wrong("its motion has fewer than 2 samples, or more than 1e6"));
+            return Err(wrong("the motion has fewer than 2 samples, or more than 1e6"));
         }
         let count = count as usize;
         let run = SystemRun {

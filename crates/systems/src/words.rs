@@ -57,13 +57,19 @@ impl MadeSystem {
         if let Some(without) = &model.without_model {
             summary.fact("without a model", without.how.clone());
         }
-        let has_past = matches!(model.system.start, Some(NominalStartRule::Past { .. }));
-        let starts = match model.start_samples {
-            _ if has_past => {
-                "outputs and inputs before; X0 holds the noise of these outputs".into()
+        let starts = match (&model.system.start, model.start_samples) {
+            (Some(NominalStartRule::Past { outputs, inputs }), _) => {
+                match (outputs - 1).max(*inputs) {
+                    0 => "known at the first sample, with the noise of the outputs in X0".into(),
+                    past => format!(
+                        "known from the {} before, which are not compared; X0 holds the noise of \
+                         their outputs",
+                        counted(past, "sample")
+                    ),
+                }
             }
-            0 => "known at the first sample".into(),
-            count => format!(
+            (_, 0) => "known at the first sample".into(),
+            (_, count) => format!(
                 "estimated from the first {count} samples by least squares: these have seen the \
                  start, and X0 holds its error"
             ),

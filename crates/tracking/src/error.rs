@@ -74,21 +74,12 @@ pub enum Error {
     /// The smallest sets were not found.
     #[error("the smallest sets were not found: {0}")]
     Program(String),
-    /// A model file is not one.
-    #[error("{}: {problem}", path.display())]
-    ModelFile {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it, and what to do.
-        problem: String,
-    },
 }
 
 reachtube_files::kinds!(Error {
     [Recordings | File] => inner,
     NoData => Setting,
     Program => NoAnswer,
-    ModelFile => Model,
     _ => Recordings,
 });
 

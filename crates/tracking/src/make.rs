@@ -2,6 +2,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use rayon::prelude::*;
+use reachtube_files::SealedFile;
 use reachtube_finding::{Finding, Severity};
 use reachtube_recordings::ColumnSettings;
 use reachtube_scalar::rounding::{add_up, sub_up};

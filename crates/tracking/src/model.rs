@@ -1,17 +1,13 @@
 //! The model file of an arm under its controller.
 
-use std::path::Path;
-
-use reachtube_files::{TOOL, hex, json, read_text};
+use reachtube_files::{FileHead, SealedFile};
 use reachtube_recordings::{Axis, ColumnSettings};
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_down, mul_down};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use crate::basis::{TERMS, enclosed_direction};
-use crate::error::{Error, Result};
 use crate::recording::TrackedRun;
 
 /// What the field `format` of every file says.
@@ -196,62 +192,27 @@ impl TrackingModel {
         };
         self.joints.iter().map(axis).collect()
     }
+}
 
-    /// Reads the text of a model file. Errors name the file `origin`.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::ModelFile`], which says what is wrong.
-    pub fn parse(text: &str, origin: &Path) -> Result<Self> {
-        let wrong = |problem: String| Error::ModelFile { path: origin.into(), problem };
-        let value = json::versioned(text, FORMAT, VERSION, "model").map_err(wrong)?;
-        let again = "give the file as `model --out` wrote it, or run model again";
-        let model: Self =
-            serde_json::from_value(value).map_err(|error| wrong(format!("{error}; {again}")))?;
-        let numbers = model.joints.iter().flat_map(|joint| {
+impl SealedFile for TrackingModel {
+    const FORMAT: &'static str = FORMAT;
+    const VERSION: u32 = VERSION;
+    const COMMAND: &'static str = "model";
+
+    fn head(&mut self) -> FileHead<'_> {
+        let Self { format, version, tool, sha256, .. } = self;
+        FileHead { format, version, tool, sha256 }
+    }
+
+    fn check_content(&self) -> Result<(), String> {
+        let numbers = self.joints.iter().flat_map(|joint| {
             let sizes = [joint.radius, joint.radius_per_speed, joint.largest_speed];
             joint.factors().into_iter().chain(sizes)
         });
-        if model.joints.is_empty() || !numbers.chain([model.factor]).all(f64::is_finite) {
-            return Err(wrong(format!(
-                "it has no joints, or numbers that are not finite; {again}"
-            )));
+        match self.joints.is_empty() || !numbers.chain([self.factor]).all(f64::is_finite) {
+            true => Err("it has no joints, or numbers that are not finite".into()),
+            false => Ok(()),
         }
-        if model.sha256 != model.digest() {
-            return Err(wrong(format!("its content was changed after it was written; {again}")));
-        }
-        Ok(model)
-    }
-
-    /// Returns whether a file is a model of an arm under its controller.
-    #[must_use]
-    pub fn is_at(path: &Path) -> bool {
-        json::format_of(path).as_deref() == Some(FORMAT)
-    }
-
-    /// Opens a model file.
-    ///
-    /// # Errors
-    ///
-    /// A file that cannot be read, and [`Error::ModelFile`].
-    pub fn open(path: &Path) -> Result<Self> {
-        Self::parse(&read_text(path, "name a file that `model` wrote")?, path)
-    }
-
-    /// Returns the file's text: JSON, ending with a newline.
-    #[must_use]
-    pub fn to_json(&self) -> String {
-        json::to_lines(&self.clone().sealed())
-    }
-
-    pub(crate) fn sealed(self) -> Self {
-        let own = Self { format: FORMAT.into(), version: VERSION, tool: TOOL.into(), ..self };
-        Self { sha256: own.digest(), ..own }
-    }
-
-    fn digest(&self) -> String {
-        let unsealed = Self { sha256: String::new(), ..self.clone() };
-        hex(&Sha256::digest(serde_json::to_vec(&unsealed).expect("a model has string keys")))
     }
 }
 

@@ -36,6 +36,8 @@ impl TrackingModel {
     /// # Examples
     ///
     /// ```no_run
+    /// use reachtube_files::SealedFile;
+    ///
     /// let model = reachtube_tracking::TrackingModel::open("arm/model.json".as_ref())?;
     /// println!("{}", model.ros2_control());
     /// # Ok::<(), reachtube_tracking::Error>(())

@@ -4,6 +4,7 @@ use clap::Args;
 use reachtube::conform::{Check, Keep, Notion};
 use reachtube::systems::SystemModel;
 use reachtube::tracking::TrackingModel;
+use reachtube_files::SealedFile;
 
 use crate::commands::{system, tracking};
 use crate::data_arguments::ModelArguments;

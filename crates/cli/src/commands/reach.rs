@@ -11,6 +11,7 @@ use reachtube::finding::{Finding, FrontEnd, Table};
 use reachtube::page::{Sources, page};
 use reachtube::systems::SystemModel;
 use reachtube::write;
+use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 

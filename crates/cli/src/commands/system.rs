@@ -6,6 +6,7 @@ use reachtube::finding::Table;
 use reachtube::number::significant;
 use reachtube::systems::{MadeSystem, OutputSystem, OutputTube, SystemModel};
 use reachtube::write;
+use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -7,6 +7,7 @@ use reachtube::recordings::ColumnSettings;
 use reachtube::robot::{Lock, Robot};
 use reachtube::tracking::{MadeModel, Reading, TrackingModel, make};
 use reachtube::write;
+use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 

@@ -81,7 +81,7 @@ fn a_system_with_given_sets_needs_no_recordings() {
     assert!(run.stderr.contains("--until"), "{}", run.stderr);
     lab.write("lag.toml", LAG);
     let run = lab.run("reach --system lag.toml --until 1 --step 0.1").exits(2);
-    assert!(run.stderr.contains("its sets are to be found"), "{}", run.stderr);
+    assert!(run.stderr.contains("sets of the system are to be found"), "{}", run.stderr);
 }
 
 #[test]

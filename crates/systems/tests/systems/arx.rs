@@ -2,6 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use reachtube_files::SealedFile;
 use reachtube_systems::{MatrixEntry, MatrixRows, NominalStartRule, SystemModel, SystemRun};
 
 use crate::{run, system};
@@ -37,7 +38,9 @@ fn numbers(rows: &Option<MatrixRows>) -> Vec<Vec<f64>> {
 
 #[test]
 fn factors_and_the_disturbance_are_found() {
-    let made = system(ARX).conform(&runs(0.01, 5)).unwrap();
+    // W alone explains what is not known.
+    let alone = format!("{ARX}\n[sets]\nV = 'none'");
+    let made = system(&alone).conform(&runs(0.01, 5)).unwrap();
     let model = &made.model;
     assert!(model.verified && made.is_useful());
     assert_eq!(model.system.start, Some(NominalStartRule::Past { outputs: 2, inputs: 2 }));
@@ -48,6 +51,10 @@ fn factors_and_the_disturbance_are_found() {
     // Rows are of whole motions: the errors of some steps cancel.
     let w = model.sets.disturbance.scale[0];
     assert!((0.003..0.0101).contains(&w), "{w}");
+    // A check of the same recordings compares the same samples.
+    let own = model.check(&runs(0.01, 5)).unwrap();
+    let compared: usize = model.recordings.iter().map(|of| of.samples).sum();
+    assert!(own.conformant && own.values == compared, "{own:?}");
     // Other recordings of the same system need little more.
     let check = SystemModel::parse(&model.to_json(), "model.json".as_ref())
         .unwrap()

@@ -66,7 +66,7 @@ fn a_common_factor_is_the_least_that_a_check_accepts() {
 
 /// NominalMotions under disturbances in the sets lie in the sets, and some reach near their faces.
 #[test]
-fn a_million_motions_in_the_sets_lie_inside() {
+fn motions_in_the_sets_lie_inside() {
     let (system, runs) = (walkers(3), crowd(40, 3));
     let model = system.conform(&runs).unwrap().model;
     let tube = model.reach(&runs[..1]).unwrap().remove(0);

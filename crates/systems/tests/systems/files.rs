@@ -3,6 +3,7 @@
 use std::fs::write;
 use std::path::Path;
 
+use reachtube_files::SealedFile;
 use reachtube_systems::{OutputSystem, SystemModel};
 
 use crate::{run, system, wrong};

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use reachtube_tracking::{Error, TrackedRun, TrackingModel};
+use reachtube_files::{Error, SealedFile};
+use reachtube_tracking::{TrackedRun, TrackingModel};
 
 use crate::common::{made, near, servo, set};
 
@@ -104,7 +105,7 @@ fn a_text_with_another_number_is_refused() {
         &|value| value["recordings"][2]["samples"] = 601.into(),
     ];
     for change in changes {
-        let Err(error @ Error::ModelFile { .. }) = edited(change) else {
+        let Err(error @ Error::Content { .. }) = edited(change) else {
             panic!("a changed model is accepted")
         };
         let said = error.to_string();

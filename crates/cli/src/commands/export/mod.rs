@@ -10,6 +10,7 @@ use reachtube::export::{ExportCase, ExportError, ExportFile, InputForm, Meaning,
 use reachtube::finding::Table;
 use reachtube::tracking::TrackingModel;
 use reachtube::{Robot, write};
+use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 
