@@ -140,7 +140,7 @@ impl SystemModel {
     ///
     /// # Errors
     ///
-    /// [`Error::System`], for a description that was changed.
+    /// [`Error::System`](crate::Error::System), for a description that was changed.
     pub fn system(&self) -> Result<OutputSystem> {
         OutputSystem::new(self.system.clone())
     }
