@@ -41,6 +41,12 @@ pub(crate) fn speed(text: &str) -> Result<f64, String> {
     positive(text).ok_or_else(|| "give a speed above 0 in rad/s or m/s".into())
 }
 
+/// Parses a part of the recorded speeds, above 0 and up to 1.
+pub(crate) fn part(text: &str) -> Result<f64, String> {
+    let part = positive(text).filter(|part| *part <= 1.0);
+    part.ok_or_else(|| "give a part of the recorded speeds, above 0 and up to 1".into())
+}
+
 /// Parses a frequency above 0 \[Hz\].
 pub(crate) fn hertz(text: &str) -> Result<f64, String> {
     positive(text).ok_or_else(|| "give a frequency above 0 in Hz".into())

@@ -19,7 +19,9 @@ use crate::commands::r#abstract::AbstractOutput;
 use crate::commands::convert::ConvertOutput;
 use crate::commands::demo::DemoOutput;
 use crate::commands::excite::ExciteOutput;
-use crate::commands::export::{ModelExport, RobotExport, ShieldExport, TolerancesExport};
+use crate::commands::export::{
+    ModelExport, PaddingsExport, RobotExport, ShieldExport, TolerancesExport,
+};
 use crate::commands::monitor::Event;
 use crate::commands::prepare::PrepareOutput;
 use crate::commands::reach::ReachOutput;
@@ -27,7 +29,7 @@ use crate::commands::report::ReportOutput;
 use crate::commands::reproduce::Numbers;
 use crate::commands::robot::RobotOutput;
 use crate::commands::system::{SystemOutput, TubesOutput};
-use crate::commands::tracking::TrackingOutput;
+use crate::commands::tracking::{PlansOutput, TrackingOutput};
 use crate::output::ErrorOutput;
 
 /// What a schema describes.
@@ -71,6 +73,7 @@ fn results() -> Value {
             ("error", ErrorOutput::json_schema),
             ("excite", ExciteOutput::json_schema),
             ("export", ModelExport::json_schema),
+            ("export_paddings", PaddingsExport::json_schema),
             ("export_robot", RobotExport::json_schema),
             ("export_shield", ShieldExport::json_schema),
             ("export_tolerances", TolerancesExport::json_schema),
@@ -82,6 +85,7 @@ fn results() -> Value {
             ("monitor", Event::json_schema),
             ("prepare", PrepareOutput::json_schema),
             ("reach", ReachOutput::json_schema),
+            ("reach_plan", PlansOutput::json_schema),
             ("reach_system", TubesOutput::json_schema),
             ("report", ReportOutput::json_schema),
             ("reproduce", Numbers::json_schema),

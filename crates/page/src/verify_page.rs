@@ -41,7 +41,7 @@ pub fn verify_files(verified: &Verified) -> Vec<(String, String)> {
 /// and a static picture.
 fn verify_html(verified: &Verified) -> String {
     let Verified { motions: all, body, scene, .. } = verified;
-    let warnings = &verified.warnings();
+    let warnings = &verified.warnings;
     let Report { sections } = verified.report();
     let mut findings = sections.iter().flat_map(|section| &section.findings);
     let sentence = findings.next().map_or("", |verdict| &verdict.text);

@@ -11,5 +11,7 @@ reachtube_finding::codes! {
         TurnsMoved = "turns-moved",
         /// Samples are missing or were left out, and no window crosses them.
         MissingSamples = "missing-samples",
+        /// A model of an arm under its controller is no better than none.
+        ModelNotUseful = "model-not-useful",
     }
 }

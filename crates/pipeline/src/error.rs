@@ -22,6 +22,22 @@ pub enum Error {
     /// A question about a robot's links has no answer.
     #[error(transparent)]
     Verify(Box<reachtube_verify::Error>),
+    /// A plan cannot be followed as a model says.
+    #[error(transparent)]
+    Tracking(Box<reachtube_tracking::Error>),
+    /// A robot has other joints than a model of the arm under its controller.
+    #[error(
+        "{}: the robot has the joints {joints}, but the model has {of_model}; make the model with \
+         `--robot`, of this robot", robot.display()
+    )]
+    OtherJoints {
+        /// The robot.
+        robot: PathBuf,
+        /// Its joints.
+        joints: String,
+        /// The joints of the model.
+        of_model: String,
+    },
     /// A file could not be read.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
@@ -108,8 +124,8 @@ pub enum Error {
 }
 
 reachtube_files::kinds!(Error {
-    [Identify | Conform | Robot | Abstraction | Verify | File] => inner,
-    Settings | Choice | HeldOut | NothingLeft => Setting,
+    [Identify | Conform | Robot | Abstraction | Verify | Tracking | File] => inner,
+    Settings | Choice | HeldOut | NothingLeft | OtherJoints => Setting,
     NoSets => NoAnswer,
     _ => Recordings,
 });
@@ -146,4 +162,5 @@ from_below!(
     Robot: reachtube_robot::RobotError,
     Abstraction: reachtube_abstraction::Error,
     Verify: reachtube_verify::Error,
+    Tracking: reachtube_tracking::Error,
 );

@@ -1,114 +1,140 @@
 //! The question of a scenario, as every front end asks it.
 
 use reachtube_arm::{ArmModel, OfArm, beyond_proof_of_stops};
-use reachtube_conform::{CheckJob, Keep, Model, Opened, Progress, Setup};
+use reachtube_conform::{Keep, Model, Opened, Progress, Setup};
+use reachtube_files::SealedFile;
 use reachtube_finding::{Finding, Report};
-use reachtube_recordings::RunSource;
 use reachtube_robot::Robot;
+use reachtube_tracking::{Plan, TrackingModel};
 use reachtube_verify::{
     Answer, Body, Capsules, Margin, Scenario, Scene, Verification, Witness, findings,
-    links_without_capsule, report, verify,
+    links_without_capsule, report, verify, verify_plan,
 };
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::error::Result;
+use crate::followed::{beyond_proof_of_plans, body_of, followed, robot_of};
 use crate::prepared::check_job;
 
 /// A scenario whose model, capsules and obstacles were read.
 #[derive(Debug)]
 pub struct ScenarioJob {
     scenario: Scenario,
-    model: Model,
-    setup: Setup,
+    motions: Motions,
     body: Body,
     scene: Scene,
+}
+
+/// What moves the links.
+#[derive(Debug)]
+enum Motions {
+    /// A model of torques, over recordings.
+    Recorded(Box<(Model, Setup)>),
+    /// A model of the arm under its controller, over plans.
+    Planned(Box<(TrackingModel, Robot)>),
 }
 
 /// The verdicts about the motions of a scenario.
 #[derive(Debug)]
 pub struct Verified {
-    /// The model, the recordings and the reachable sets.
-    pub opened: Opened,
+    /// The model, the recordings and the reachable sets; `None` for plans.
+    pub opened: Option<Opened>,
     /// The capsules around the links.
     pub body: Body,
     /// The obstacles.
     pub scene: Scene,
     /// The verdict about each motion.
     pub motions: Vec<Verification>,
+    /// Why the verdicts say less of the robot than of the model: sets that are used for more than
+    /// they were proved for, and links without a capsule.
+    pub warnings: Vec<Finding>,
 }
 
 impl ScenarioJob {
-    /// Reads what a scenario names, but for the recordings.
+    /// Reads what a scenario names, but for the recordings and plans.
     ///
     /// # Errors
     ///
-    /// A model, robot or capsules that cannot be read; obstacles that are not possible.
+    /// A model, robot or capsules that cannot be read; obstacles that are not possible; recordings
+    /// or plans that the model cannot follow.
     pub fn new(scenario: Scenario) -> Result<Self> {
+        if TrackingModel::is_at(&scenario.model) {
+            let model = TrackingModel::open(&scenario.model)?;
+            let (_, name) = scenario.planned()?;
+            let robot = robot_of(&model, name)?;
+            let body = body_of(&robot, name, scenario.capsules.as_deref())?;
+            let scene = scenario.scene(&robot)?;
+            let motions = Motions::Planned(Box::new((model, robot)));
+            return Ok(Self { scenario, motions, body, scene });
+        }
         let (model, setup) = reachtube_arm::open(&scenario.model)?;
-        Self::with_model(scenario, model, setup)
-    }
-
-    /// Reads what a scenario names, but for the recordings, with a model in memory.
-    ///
-    /// # Errors
-    ///
-    /// As [`new`](Self::new).
-    pub fn with_model(scenario: Scenario, model: Model, setup: Setup) -> Result<Self> {
+        scenario.recordings()?;
         let robot = Robot::from_description(&model.robot())?;
         let scene = scenario.scene(&robot)?;
         let body = Body::new(&robot, &Capsules::open(scenario.capsules.as_deref(), &robot)?);
-        Ok(Self { scenario, model, setup, body, scene })
+        let motions = Motions::Recorded(Box::new((model, setup)));
+        Ok(Self { scenario, motions, body, scene })
     }
 
-    /// Reads the recordings, and decides for each motion whether the links stay clear.
+    /// Reads the recordings or the plans, and decides for each motion whether the links stay clear.
     ///
     /// # Guarantee
     ///
-    /// As [`verify`].
+    /// As [`verify`] and [`verify_plan`].
     ///
     /// # Errors
     ///
-    /// As [`check_job`], [`CheckJob::open`] and [`verify`].
+    /// As [`check_job`], [`CheckJob::open`](reachtube_conform::CheckJob::open), [`verify`],
+    /// [`Plan::read`] and [`followed`].
     pub fn run(self, progress: &dyn Progress) -> Result<Verified> {
-        let Self { scenario, model, setup, body, scene } = self;
-        let job = check_job(model, setup, &scenario.data)?;
-        verified(job, &scenario, (body, scene), progress)
-    }
-
-    /// Decides as [`run`](Self::run) does over recordings that were opened, or prepared, already.
-    ///
-    /// # Guarantee
-    ///
-    /// As [`verify`].
-    ///
-    /// # Errors
-    ///
-    /// As [`CheckJob::open`] and [`verify`].
-    pub fn run_over(
-        self,
-        source: impl RunSource + 'static,
-        progress: &dyn Progress,
-    ) -> Result<Verified> {
-        let Self { scenario, model, setup, body, scene } = self;
-        verified(CheckJob::new(model, setup, source), &scenario, (body, scene), progress)
+        let Self { scenario, motions, body, scene } = self;
+        match motions {
+            Motions::Planned(of) => planned(&of.0, &of.1, &scenario, (body, scene)),
+            Motions::Recorded(of) => {
+                let (model, setup) = *of;
+                let job = check_job(model, setup, scenario.recordings()?)?;
+                let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
+                recorded(job.open(progress)?, &scenario, (body, scene))
+            }
+        }
     }
 }
 
-fn verified(
-    job: CheckJob,
+fn recorded(
+    opened: Opened,
     scenario: &Scenario,
     (body, scene): (Body, Scene),
-    progress: &dyn Progress,
 ) -> Result<Verified> {
-    let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
-    let opened = job.open(progress)?;
-    let robot = opened.problem.robot();
-    let input_set = |rates: &[f64]| opened.problem.input_set_at(&opened.tube.sets, rates);
-    let rule = scenario.stop(robot, &input_set)?;
-    let motions = verify(&opened.problem, &opened.tube, (&body, &scene), rule.as_ref())?;
-    Ok(Verified { opened, body, scene, motions })
+    let Opened { model, problem, tube } = &opened;
+    let input_set = |rates: &[f64]| problem.input_set_at(&tube.sets, rates);
+    let rule = scenario.stop(problem.robot(), &input_set)?;
+    let motions = verify(problem, tube, (&body, &scene), rule.as_ref())?;
+    let mut warnings = match rule {
+        Some(_) => beyond_proof_of_stops(model, problem),
+        None => model.beyond_proof(problem),
+    };
+    warnings.extend(links_without_capsule(&body, &scene));
+    Ok(Verified { opened: Some(opened), body, scene, motions, warnings })
+}
+
+fn planned(
+    model: &TrackingModel,
+    robot: &Robot,
+    scenario: &Scenario,
+    (body, scene): (Body, Scene),
+) -> Result<Verified> {
+    let (path, _) = scenario.planned()?;
+    let plans = Plan::read(path, model, scenario.until)?;
+    let decide = |plan: &Plan| {
+        let at_speed = |part: f64| followed(model, &plan.slowed(part)).ok();
+        Ok(verify_plan(robot, (&body, &scene), &at_speed, followed(model, plan)?)?)
+    };
+    let motions = plans.iter().map(decide).collect::<Result<_>>()?;
+    let mut warnings = beyond_proof_of_plans(model);
+    warnings.extend(links_without_capsule(&body, &scene));
+    Ok(Verified { opened: None, body, scene, motions, warnings })
 }
 
 /// The answer of `verify` as JSON.
@@ -151,25 +177,13 @@ impl Verified {
         self.motions.iter().map(|one| one.answer).max().unwrap_or(Answer::Undecided)
     }
 
-    /// Returns the findings: the verdict, [`warnings`](Self::warnings), and what would decide.
+    /// Returns the findings: the verdict, the warnings, and what would decide.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
         let mut all = findings(&self.motions, &self.body, &self.scene);
-        all.splice(all.len().min(1)..all.len().min(1), self.warnings());
+        let second = all.len().min(1);
+        all.splice(second..second, self.warnings.iter().cloned());
         all
-    }
-
-    /// Returns why the verdicts say less of the robot than of the model: sets that are used for
-    /// more than they were proved for, and links without a capsule.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<Finding> {
-        let Opened { model, problem, .. } = &self.opened;
-        let mut warnings = match self.motions.iter().any(|one| one.stops.is_some()) {
-            true => beyond_proof_of_stops(model, problem),
-            false => model.beyond_proof(problem),
-        };
-        warnings.extend(links_without_capsule(&self.body, &self.scene));
-        warnings
     }
 
     /// Returns the answer as a report.
@@ -196,16 +210,18 @@ impl Verified {
     }
 
     /// Returns a simulated motion as CSV, `t,q1,..,qd1,..,tau1,..`, whose torque is the model's
-    /// input, and during a stop the torque of the drives.
+    /// input, and during a stop the torque of the drives. An arm under its controller has none.
     #[must_use]
     pub fn csv(&self, found: &Witness) -> String {
         let n = self.body.joint_count();
         let names = |kind: &str| (1..=n).map(|i| format!(",{kind}{i}")).collect::<String>();
-        let mut text = format!("t{}{}{}\n", names("q"), names("qd"), names("tau"));
+        let torques = if found.inputs.is_empty() { String::new() } else { names("tau") };
+        let mut text = format!("t{}{}{torques}\n", names("q"), names("qd"));
         for (k, t) in found.times.iter().enumerate() {
             text += &t.to_string();
             let row = found.states[2 * n * k..2 * n * (k + 1)].iter();
-            row.chain(&found.inputs[n * k..n * (k + 1)]).for_each(|x| text += &format!(",{x}"));
+            let inputs = found.inputs.get(n * k..n * (k + 1)).unwrap_or_default();
+            row.chain(inputs).for_each(|x| text += &format!(",{x}"));
             text.push('\n');
         }
         text

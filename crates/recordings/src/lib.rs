@@ -77,7 +77,7 @@ pub use pattern::matching;
 pub use preparation::Preparation;
 pub use reading::{
     ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, NamedColumns, NamedRun,
-    Understood, csv_files, group_files, parse_csv, read_csv, read_logged, read_named,
+    Understood, Wanted, csv_files, group_files, parse_csv, read_csv, read_logged, read_named,
 };
 pub use refusal::Refusal;
 pub use resample::{EvenSamples, Sample};

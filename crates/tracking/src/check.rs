@@ -5,10 +5,8 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::model::TrackingModel;
 use crate::motion::{MotionRows, motions};
+use crate::plan::AS_FAST;
 use crate::recording::{TrackedRun, check};
-
-/// Beyond the recorded speed by no more than this part, a command counts as one like the recorded.
-const AS_FAST: f64 = 1e-9;
 
 /// What other recordings say of a model of an arm under its controller.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]

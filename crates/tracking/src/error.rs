@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use reachtube_scalar::number::counted;
+use reachtube_scalar::number::{counted, significant};
 use thiserror::Error;
 
 /// Why no model could be made of commanded and actual positions, or compared with others.
@@ -70,6 +70,30 @@ pub enum Error {
         before: usize,
         /// In how many samples.
         copied: usize,
+    },
+    /// A plan is faster than what the model was made of.
+    #[error(
+        "{}: the command of {joint} reaches {} {unit} at {time:.3} s, but the model was made of \
+         commands up to {} {unit}; send the plan at {} % of its speed, or make the model of \
+         recordings that are as fast",
+        file.display(), significant(*value, 3), significant(*largest, 3),
+        (100.0 * part).floor()
+    )]
+    Beyond {
+        /// The plan.
+        file: PathBuf,
+        /// The joint.
+        joint: String,
+        /// The unit of its speed, or of its acceleration.
+        unit: String,
+        /// What it reaches.
+        value: f64,
+        /// The largest of the recordings.
+        largest: f64,
+        /// The time, s.
+        time: f64,
+        /// The part of its speed at which the model holds for the plan.
+        part: f64,
     },
     /// The smallest sets were not found.
     #[error("the smallest sets were not found: {0}")]

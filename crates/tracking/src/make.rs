@@ -95,6 +95,7 @@ pub fn make(recordings: &[TrackedRun]) -> Result<MadeModel> {
         verified: false,
         joints: joints(&used, chosen),
         factor: chosen.factor,
+        step: used.iter().map(TrackedRun::usual_step).fold(0.0, f64::max),
         left_out: left_out(&motions, &rows, chosen, rows.inside(chosen)?),
         recordings: recorded.collect(),
         columns: ColumnSettings::default(),
@@ -133,6 +134,7 @@ fn joints(recordings: &[TrackedRun], chosen: &FittedFamily) -> Vec<JointTracking
             largest_speed: largest(&|of, k| of.rates::<f64>(k, joint)[0]),
             largest_acceleration: largest(&|of, k| of.rates::<f64>(k, joint)[1]),
             largest_error: largest(&|of, k| of.error(k, joint)),
+            largest_change: 0.0,
         }
     };
     chosen.sets.iter().enumerate().map(of_joint).collect()
@@ -190,6 +192,15 @@ fn hold_all(model: &mut TrackingModel, recordings: &[TrackedRun]) {
         recordings.par_iter().all(of)
     };
     model.verified = model.joints.iter().enumerate().all(holds);
+    for joint in 0..model.joints.len() {
+        let rest = |of: &TrackedRun, k: usize| model.joints[joint].beside(of, k, joint).0;
+        let change = |of: &TrackedRun| {
+            let steps = 1..of.times.len();
+            steps.map(|k| (rest(of, k) - rest(of, k - 1)).mag()).fold(0.0, f64::max)
+        };
+        let largest = recordings.par_iter().map(change).reduce(|| 0.0, f64::max);
+        model.joints[joint].largest_change = largest;
+    }
 }
 
 /// Returns what speaks against a model.

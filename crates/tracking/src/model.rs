@@ -14,7 +14,7 @@ use crate::recording::TrackedRun;
 pub(crate) const FORMAT: &str = "reachtube-tracking-model";
 
 /// The version of the format.
-pub(crate) const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 2;
 
 /// A model of an arm under its controller: at each sample of a command r, the actual position y of
 /// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. The parabola through the
@@ -38,6 +38,8 @@ pub struct TrackingModel {
     /// The factor of the sets: the largest by which the smallest sets of other motions had to grow
     /// for a motion, over all joints.
     pub factor: f64,
+    /// The usual time between two samples, of the recording that has the longest, s.
+    pub step: f64,
     /// The motions that decided the factor, and how it was found.
     pub left_out: NeedsOfMotions,
     /// The recordings.
@@ -75,6 +77,9 @@ pub struct JointTracking {
     pub largest_acceleration: f64,
     /// The largest recorded |y - r|, rad.
     pub largest_error: f64,
+    /// The largest recorded change of y minus the nominal position from one sample to the next,
+    /// rad.
+    pub largest_change: f64,
 }
 
 /// How the motions were used that the factor comes from.
@@ -123,16 +128,23 @@ impl JointTracking {
     /// The position is enclosed, and the half-width a lower bound; directed rounding.
     pub(crate) fn beside(&self, recording: &TrackedRun, k: usize, joint: usize) -> (Interval, f64) {
         let at = k * recording.joint_count() + joint;
-        let position = |of: &[f64]| Interval::point(of[at]);
-        let [speed, acceleration] = recording.rates::<Interval>(k, joint);
+        let rates = recording.rates::<Interval>(k, joint);
+        let nominal = self.nominal(Interval::point(recording.command[at]), rates);
+        let growth = mul_down(self.radius_per_speed, rates[0].mig());
+        (Interval::point(recording.actual[at]) - nominal, add_down(self.radius, growth))
+    }
+
+    /// Encloses the nominal position at a commanded one, with its speed and acceleration.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding.
+    pub(crate) fn nominal(&self, command: Interval, [speed, acceleration]: [Interval; 2]) -> Interval {
         let direction = enclosed_direction(speed, self.largest_speed);
         let terms = [Interval::ONE, speed, acceleration, direction];
         let pairs = terms.into_iter().zip(self.factors());
         let pairs = pairs.filter(|(_, factor)| *factor != 0.0);
-        let nominal =
-            pairs.fold(position(&recording.command), |sum, (term, factor)| sum + term * factor);
-        let growth = mul_down(self.radius_per_speed, speed.mig());
-        (position(&recording.actual) - nominal, add_down(self.radius, growth))
+        pairs.fold(command, |sum, (term, factor)| sum + term * factor)
     }
 
     /// Returns the half-width of the set at a commanded speed \[rad/s\], rad.
@@ -206,10 +218,11 @@ impl SealedFile for TrackingModel {
 
     fn check_content(&self) -> Result<(), String> {
         let numbers = self.joints.iter().flat_map(|joint| {
-            let sizes = [joint.radius, joint.radius_per_speed, joint.largest_speed];
+            let JointTracking { radius, radius_per_speed, largest_speed, .. } = *joint;
+            let sizes = [radius, radius_per_speed, largest_speed, joint.largest_change];
             joint.factors().into_iter().chain(sizes)
         });
-        match self.joints.is_empty() || !numbers.chain([self.factor]).all(f64::is_finite) {
+        match self.joints.is_empty() || !numbers.chain([self.factor, self.step]).all(f64::is_finite) {
             true => Err("it has no joints, or numbers that are not finite".into()),
             false => Ok(()),
         }

@@ -2,10 +2,13 @@ use std::ops::{Add, Div, Mul, Sub};
 use std::path::{Path, PathBuf};
 
 use reachtube_logs::LogFiles;
-use reachtube_recordings::{Axis, ColumnSettings, GapLimit, LoggedOptions, read_logged};
+use reachtube_recordings::{
+    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, read_logged,
+};
 
 use crate::basis::rates;
 use crate::error::{Error, Result};
+use crate::plan::Plan;
 
 /// Fewest samples of a recording, which has an acceleration.
 pub(crate) const FEWEST_SAMPLES: usize = 3;
@@ -74,41 +77,45 @@ impl Reading<'_> {
     }
 
     fn read_csv(&self, files: &[PathBuf]) -> Result<(TrackedRun, Vec<String>)> {
+        let (plan, Logged { run, command, notes, .. }) = self.logged(files, Wanted::Commands)?;
+        let Plan { file, joints, units, times, command: actual } = plan;
+        let command = command[..actual.len()].to_vec();
+        let sha256 = run.sha256;
+        Ok((TrackedRun { file, joints, units, times, command, actual, sha256 }, notes))
+    }
+
+    /// Reads a log: its positions, and what was read besides.
+    pub(crate) fn logged(&self, files: &[PathBuf], wanted: Wanted) -> Result<(Plan, Logged)> {
         let options = LoggedOptions {
             robot: self.axes,
             joints: &[],
             columns: self.columns,
             gains: false,
-            torque: false,
-            command: true,
+            wanted,
             gap_limit: GapLimit::Seconds(f64::INFINITY),
             until: self.until,
         };
         let logged = read_logged(files, &options).map_err(reachtube_recordings::Error::Defects)?;
-        let run = logged.run;
-        let n = run.joints;
-        let of_columns = logged.understood.map(|of| of.joints).unwrap_or_default();
-        let of_columns = of_columns.into_iter().map(|name| match name.parse::<usize>() {
+        let run = &logged.run;
+        let of_columns = logged.understood.as_ref().map_or(&[][..], |of| &of.joints);
+        let of_columns = of_columns.iter().map(|name| match name.parse::<usize>() {
             Ok(number) => format!("joint_{number}"),
-            Err(_) => name,
+            Err(_) => name.clone(),
         });
-        let joints = match self.axes {
-            Some(axes) => axes.iter().map(|axis| axis.name.clone()).collect(),
-            None => of_columns.collect(),
-        };
-        let recording = TrackedRun {
+        let plan = Plan {
             file: files[0].clone(),
+            joints: match self.axes {
+                Some(axes) => axes.iter().map(|axis| axis.name.clone()).collect(),
+                None => of_columns.collect(),
+            },
             units: match self.axes {
                 Some(axes) => axes.iter().map(|axis| axis.units[0]).collect(),
-                None => vec!["rad"; n],
+                None => vec!["rad"; run.joints],
             },
-            joints,
-            command: logged.command[..n * run.len()].to_vec(),
-            actual: (0..run.len()).flat_map(|k| run.q(k).to_vec()).collect(),
-            times: run.times,
-            sha256: run.sha256,
+            times: run.times.clone(),
+            command: (0..run.len()).flat_map(|k| run.q(k).to_vec()).collect(),
         };
-        Ok((recording, logged.notes))
+        Ok((plan, logged))
     }
 }
 
@@ -159,6 +166,13 @@ impl TrackedRun {
     pub(crate) fn error(&self, k: usize, joint: usize) -> f64 {
         let at = k * self.joint_count() + joint;
         self.actual[at] - self.command[at]
+    }
+
+    /// Returns the median of the times between two samples, s.
+    pub(crate) fn usual_step(&self) -> f64 {
+        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let middle = steps.len() / 2;
+        *steps.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
     /// Returns the name of the file.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use reachtube_files::MARK;
+use reachtube_scalar::Interval;
 use reachtube_scalar::number::two_digits_up;
 use reachtube_scalar::rounding::{add_up, mul_up};
 
@@ -26,6 +27,61 @@ impl JointTracking {
             (self.direction, 1.0),
         ];
         [at_rest, terms.into_iter().map(product).fold(at_rest, add_up)]
+    }
+}
+
+/// How far each joint can be from a plan, up to a part of the recorded speeds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deviations {
+    /// The part of the recorded speeds.
+    pub part: f64,
+    /// From the position that is planned for the same time, rad.
+    pub at_the_same_time: Vec<f64>,
+    /// From the position that was planned for [`late_by`](Self::late_by) before, rad: how far the
+    /// arm is from its path.
+    pub along_the_path: Vec<f64>,
+    /// The time by which the arm as a whole is late, s.
+    pub late_by: f64,
+}
+
+impl TrackingModel {
+    /// Returns how far each joint can be from a plan whose speeds are at most a part of the
+    /// recorded ones, and whose accelerations at most the square of it.
+    ///
+    /// Along the path the time by which the arm is late is one number for all joints: of the lags
+    /// of the joints the one with the smallest sum of deviations. With it, a position of the plan
+    /// is known to as much as its speed can change within half a step of the recordings.
+    ///
+    /// # Guarantee
+    ///
+    /// Outer, directed rounding, for plans whose accelerations are bounded so at every time.
+    #[must_use]
+    pub fn deviations(&self, part: f64) -> Deviations {
+        let of = |late: f64| -> Vec<f64> {
+            self.joints.iter().map(|joint| joint.deviation(part, late, self.step)).collect()
+        };
+        let sum = |late: &f64| of(*late).iter().sum::<f64>();
+        let lags = self.joints.iter().map(|joint| -joint.speed).filter(|lag| *lag > 0.0);
+        let late_by = lags.chain([0.0]).min_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap_or(0.0);
+        Deviations { part, at_the_same_time: of(0.0), along_the_path: of(late_by), late_by }
+    }
+}
+
+impl JointTracking {
+    /// Bounds |y(t) - r(t - late)| for commands up to a part of the recorded speed. The speed of
+    /// the parabola through three samples differs from the command's by what it can change within
+    /// half a step.
+    fn deviation(&self, part: f64, late: f64, step: f64) -> f64 {
+        let point = Interval::point;
+        let speed = point(part) * self.largest_speed;
+        let acceleration = point(part).sqr() * self.largest_acceleration;
+        let late = point(late);
+        let by_speed = (late + self.speed).abs() + point(self.radius_per_speed);
+        let by_acceleration = point(self.acceleration.abs())
+            + late.sqr() * 0.5
+            + late * point(step) * 0.5;
+        let fixed = point(self.offset.abs()) + self.direction.abs() + self.radius;
+        (fixed + by_speed * speed + by_acceleration * acceleration).hi()
     }
 }
 

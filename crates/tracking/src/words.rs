@@ -184,7 +184,8 @@ fn milli(value: f64, unit: &str) -> String {
 }
 
 /// Returns a half-width in thousandths of its unit, rounded up to three digits.
-fn width_up(width: f64, unit: &str) -> String {
+#[must_use]
+pub fn width_up(width: f64, unit: &str) -> String {
     let size = mul_up(1e3, width);
     let decimals = (2.0 - size.max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 6.0) as usize;
     let [_, up] = outward([0.0, size], decimals);

@@ -23,6 +23,8 @@ reachtube_finding::codes! {
         Undecided = "undecided",
         /// Steps divided into more parts decide.
         StepsTooLong = "steps-too-long",
+        /// The plan is proved at a lower speed.
+        PlanTooFast = "plan-too-fast",
         /// Smaller sets decide.
         SetsTooLarge = "sets-too-large",
         /// The nominal motion itself comes too close for a proof.

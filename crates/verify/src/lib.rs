@@ -33,6 +33,8 @@ pub use stop::simulated::{SimulatedStop, StopCase};
 pub use stop::stop::{Stop, stop_0, stop_1};
 pub use stop::study::{StopQuestion, StopStudy, stop_study};
 pub use stop::text::{annex_table, recorded_table};
+pub use verdict::decide::NextStep;
 pub use verdict::findings::{findings, links_without_capsule, worst_first};
+pub use verdict::planned::verify_plan;
 pub use verdict::verification::{Answer, Verification, verify};
 pub use verdict::witness::Witness;

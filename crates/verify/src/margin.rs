@@ -7,6 +7,7 @@ use reachtube_scalar::rounding::{add_up, mul_up, sub_up};
 use serde::Serialize;
 
 use crate::body::body::{Body, Workspace};
+use crate::body::capsule::Capsule;
 
 /// The proved margin of a link: grown by it, the link's capsules on the nominal motion contain the
 /// link's capsules on every motion of the model at the same time.
@@ -102,6 +103,27 @@ impl Body {
             of_end(capsule.joint, from).max(of_end(capsule.joint, to))
         });
         ways.collect()
+    }
+}
+
+impl Body {
+    /// Bounds how far any point of each capsule moves while the joints shift by up to `shift` (rad;
+    /// m), from any positions in `ranges`, m. The order is that of the capsules.
+    ///
+    /// # Guarantee
+    ///
+    /// Upper bounds, directed rounding: a point within the radius of the segment is turned by each
+    /// revolute joint before it.
+    #[must_use]
+    pub fn largest_ways(&self, ranges: &[Interval], shift: &[f64]) -> Vec<f64> {
+        let by: Vec<Interval> = shift.iter().map(|e| Interval::centred(0.0, *e)).collect();
+        let ways = self.ways(&mut Workspace::default(), ranges, &by);
+        let with_radius = |(way, capsule): (f64, &Capsule)| {
+            let turning = (0..=capsule.joint).filter(|joint| self.chain.turns(*joint));
+            let turned = turning.fold(0.0, |sum, joint| add_up(sum, shift[joint]));
+            add_up(way, mul_up(capsule.radius, turned))
+        };
+        ways.into_iter().zip(self.capsules()).map(with_radius).collect()
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use reachtube::recordings::{
-    DataSet, Inspection, JointSummary, LoggedOptions, Refusal, RunGroup, inspect,
+    DataSet, Inspection, JointSummary, LoggedOptions, Refusal, RunGroup, Wanted, inspect,
 };
 use reachtube_files::ErrorKind;
 use reachtube_logs::{LogFiles, inspect_logs};
@@ -79,8 +79,7 @@ fn run_logs(args: &Arguments, json: bool) -> Result<Outcome> {
         joints: &[],
         columns: &columns,
         gains: false,
-        torque: false,
-        command: false,
+        wanted: Wanted::AnyTorques,
         gap_limit: args.max_gap.into(),
         until: None,
     };

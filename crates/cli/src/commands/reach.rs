@@ -10,14 +10,15 @@ use reachtube::conform::{Keep, Model, Stiction, SuiteReach, stiction};
 use reachtube::finding::{Finding, FrontEnd, Table};
 use reachtube::page::{Sources, page};
 use reachtube::systems::SystemModel;
+use reachtube::tracking::TrackingModel;
 use reachtube::write;
 use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::commands::system;
+use crate::commands::{system, tracking};
 use crate::data_arguments::ModelArguments;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::file_names;
 use crate::opened::OpenedCheck;
 use crate::option_values::seconds;
@@ -29,6 +30,9 @@ use reachtube::number::{at_least, four_decimals};
 const HELP: &str = "\
 Examples:
   reachtube reach --model model.json --data recordings --suites A --out reach
+
+  reachtube reach --model arm/model.json --plan plan.csv --robot arm.urdf --out reach
+      where an arm under its controller can be that follows a plan
 
   reachtube reach --system rotor.toml --until 5 --step 0.01 --out reach
 
@@ -42,7 +46,7 @@ Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
 #[command(
     after_help = HELP,
     mut_arg("model", |arg| optional(arg).required_unless_present("system")),
-    mut_arg("data", |arg| optional(arg).required_unless_present("system"))
+    mut_arg("data", |arg| optional(arg).required_unless_present("system").visible_alias("plan"))
 )]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -54,6 +58,10 @@ pub(crate) struct Arguments {
     /// Time between samples of a continuous system without recordings, above 0 s
     #[arg(long, value_name = "SECONDS", value_parser = seconds, requires = "system")]
     pub step: Option<f64>,
+    /// Robot that follows the plan, for the distances of its links: an embedded one, or a TOML or
+    /// URDF file
+    #[arg(long, conflicts_with = "system")]
+    pub robot: Option<String>,
     /// Folder for the CSV files and figures
     #[arg(long, value_name = "FOLDER", default_value = "reach")]
     pub out: PathBuf,
@@ -113,10 +121,10 @@ struct RestOutput<'a> {
 }
 
 /// The reachable set of a suite or run, and the files that hold it.
-struct Written<'a> {
-    reach: &'a SuiteReach,
-    samples: PathBuf,
-    tube: PathBuf,
+pub(super) struct Written<'a> {
+    pub reach: &'a SuiteReach,
+    pub samples: PathBuf,
+    pub tube: PathBuf,
 }
 
 /// Returns an argument that a system stands in for, with a dash in its place.
@@ -129,6 +137,12 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let (system, how) = (args.system.as_deref(), (args.step, &*args.out));
         return system::reach(system, &args.model, how, json);
     }
+    if TrackingModel::is_at(&args.model.model) {
+        return tracking::reach(&args.model, args.robot.as_deref(), &args.out, json);
+    }
+    if args.robot.is_some() {
+        return Err(Error::setting("the model has its robot; leave --robot out"));
+    }
     write::try_at(&args.out.join("A.csv"))?;
     let opened = OpenedCheck::new(&args.model, None, Keep::All)?;
     let OpenedCheck { model, problem, .. } = &opened;
@@ -139,13 +153,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     }
     let mut rests = stiction(problem, &model.sets(), &model.allowance, &reach);
     rests.retain(|rest| rest.steps > 0);
-    let file = |reach, name: String| Written {
-        reach,
-        samples: args.out.join(format!("{name}.csv")),
-        tube: args.out.join(format!("{name}_tube.csv")),
-    };
-    let names = file_names::of_reach(&reach);
-    let written: Vec<_> = reach.iter().zip(names).map(|(reach, name)| file(reach, name)).collect();
+    let written = Written::all(&reach, &args.out);
     let record = args.out.join("reach.json");
     let tables = written.iter().flat_map(|file| [&file.samples, &file.tube]);
     output::claim_all(tables.chain([&record]))?;
@@ -223,9 +231,19 @@ fn rests_text(model: &Model, rests: &[Stiction]) -> String {
     )
 }
 
-impl Written<'_> {
+impl<'a> Written<'a> {
+    /// Returns the files of some sets in a folder.
+    pub(super) fn all(reach: &'a [SuiteReach], out: &Path) -> Vec<Self> {
+        let file = |(reach, name): (&'a SuiteReach, String)| Self {
+            reach,
+            samples: out.join(format!("{name}.csv")),
+            tube: out.join(format!("{name}_tube.csv")),
+        };
+        reach.iter().zip(file_names::of_reach(reach)).map(file).collect()
+    }
+
     /// Returns the names of the two CSV files with their contents.
-    fn contents(&self) -> [(String, Vec<u8>); 2] {
+    pub(super) fn contents(&self) -> [(String, Vec<u8>); 2] {
         let name =
             |path: &Path| path.file_name().expect("it was joined").to_string_lossy().into_owned();
         let (mut samples, mut tube) = (Vec::new(), Vec::new());

@@ -1,16 +1,24 @@
-//! `reachtube model` and `check` of an arm under its controller.
+//! `reachtube model`, `check` and `reach` of an arm under its controller.
 
 use std::path::{Path, PathBuf};
 
 use reachtube::axes;
+use reachtube::conform::SuiteReach;
+use reachtube::finding::Table;
+use reachtube::pipeline::{body_of, followed, robot_of};
 use reachtube::recordings::ColumnSettings;
 use reachtube::robot::{Lock, Robot};
-use reachtube::tracking::{MadeModel, Reading, TrackingModel, make};
+use reachtube::tracking::{
+    JointTracking, MadeModel, Plan, Reading, TrackingModel, make, width_up,
+};
+use reachtube::verify::{Body, Margin};
 use reachtube::write;
+use reachtube::scalar::rounding::sub_up;
 use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::commands::reach::Written;
 use crate::data_arguments::ModelArguments;
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
@@ -108,4 +116,130 @@ pub(crate) fn check(args: &ModelArguments, json: bool) -> Result<Outcome> {
         false => output::print_verdict(&check.summary(&model).to_string(), &outcome)?,
     }
     Ok(outcome)
+}
+
+/// What `reach --json` prints of an arm that follows plans.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct PlansOutput {
+    /// The plans.
+    plans: Vec<PlanOutput>,
+}
+
+/// Where an arm can be that follows a plan.
+#[derive(Serialize, JsonSchema)]
+struct PlanOutput {
+    /// The plan.
+    plan: String,
+    /// Number of samples.
+    samples: usize,
+    /// Time of the last sample, s.
+    duration: f64,
+    /// How far each joint can be from the plan at a sample, rad or m; rounded up.
+    joints: Vec<Furthest>,
+    /// How far each link can be from the plan at any time, m; rounded up. Empty without a robot.
+    links: Vec<Furthest>,
+    /// File with the set at samples.
+    csv: String,
+    /// File with the set over each step.
+    tube_csv: String,
+}
+
+/// The largest distance from a plan.
+#[derive(Serialize, JsonSchema)]
+struct Furthest {
+    /// The joint, or the joint that moves the link.
+    of: String,
+    /// The unit of the distance.
+    unit: String,
+    /// The distance.
+    distance: f64,
+    /// The time at which it is the largest, s.
+    time: f64,
+}
+
+/// Computes where an arm can be that follows plans under its controller.
+pub(crate) fn reach(
+    args: &ModelArguments,
+    robot: Option<&str>,
+    out: &Path,
+    json: bool,
+) -> Result<Outcome> {
+    let ModelArguments { model, data } = args;
+    if data.torque.is_some() || data.max_gap.is_some() || !data.suites.is_empty() {
+        return Err(Error::setting(NO_TORQUES));
+    }
+    let model = TrackingModel::open(model)?;
+    let body = robot.map(|name| body_of(&robot_of(&model, name)?, name, None)).transpose()?;
+    let plans = Plan::read(&data.data, &model, data.until)?;
+    let sets = plans.iter().map(|plan| followed(&model, plan));
+    let sets: Vec<SuiteReach> = sets.collect::<Result<_, _>>()?;
+    let written = Written::all(&sets, out);
+    output::claim_all(written.iter().flat_map(|file| [&file.samples, &file.tube]))?;
+    for (name, content) in written.iter().flat_map(Written::contents) {
+        write::atomically(&out.join(name), |file| file.write_all(&content))?;
+    }
+    if !model.is_useful() {
+        output::warn(reachtube::pipeline::NOT_USEFUL);
+    }
+    let of_plan = |file| PlanOutput::new(file, &model, body.as_ref());
+    let output = PlansOutput { plans: written.iter().map(of_plan).collect() };
+    match json {
+        true => output::print_json(&output)?,
+        false => output.plans.iter().try_for_each(|plan| output::print(&plan.text()))?,
+    }
+    Ok(Outcome::Done)
+}
+
+impl PlanOutput {
+    fn new(file: &Written, model: &TrackingModel, body: Option<&Body>) -> Self {
+        let SuiteReach { times, nominal, lower, upper, dimension, .. } = file.reach;
+        let joint = |(joint, of): (usize, &JointTracking)| {
+            let distance = |k: usize| {
+                let at = k * dimension + joint;
+                let below = sub_up(nominal[at], lower[at]);
+                (sub_up(upper[at], nominal[at]).max(below), times[k])
+            };
+            let furthest = (0..times.len()).map(distance).max_by(|a, b| a.0.total_cmp(&b.0));
+            let (distance, time) = furthest.unwrap_or_default();
+            Furthest { of: of.name.clone(), unit: of.unit.clone(), distance, time }
+        };
+        let link = |(body, margin): (&Body, Margin)| Furthest {
+            of: body.joint_name(margin.joint).into(),
+            unit: "m".into(),
+            distance: margin.distance,
+            time: margin.time,
+        };
+        let margins = |body: &'_ Body| body.margins(file.reach);
+        let links = body.into_iter().flat_map(|body| margins(body).into_iter().map(move |m| (body, m)));
+        Self {
+            plan: file.reach.suite.clone(),
+            samples: times.len(),
+            duration: times.last().copied().unwrap_or_default(),
+            joints: model.joints.iter().enumerate().map(joint).collect(),
+            links: links.map(link).collect(),
+            csv: file.samples.display().to_string(),
+            tube_csv: file.tube.display().to_string(),
+        }
+    }
+
+    /// Returns the answer as tables.
+    fn text(&self) -> String {
+        let row = |of: &Furthest| {
+            vec![of.of.clone(), width_up(of.distance, &of.unit), format!("{:.3} s", of.time)]
+        };
+        let table = |head: &str, all: &[Furthest]| {
+            Table::new([head, "furthest from the plan", "at"], all.iter().map(row).collect())
+        };
+        let mut text = format!(
+            "{}: {} samples, {:.3} s\n{}",
+            self.plan,
+            self.samples,
+            self.duration,
+            table("joint", &self.joints)
+        );
+        if !self.links.is_empty() {
+            text += &format!("{}", table("link of", &self.links));
+        }
+        text + &format!("  wrote {}, {}\n", self.csv, self.tube_csv)
+    }
 }

@@ -56,10 +56,10 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let bar = Progress::new();
         job.run(&bar)?
     };
-    let Opened { model, problem, .. } = &verified.opened;
-    let change = "until = SECONDS in the scenario changes the limit";
-    print_notes(model, problem, until, change);
-    verified.warnings().iter().for_each(|warning| output::warn(&warning.text));
+    if let Some(Opened { model, problem, .. }) = &verified.opened {
+        print_notes(model, problem, until, "until = SECONDS in the scenario changes the limit");
+    }
+    verified.warnings.iter().for_each(|warning| output::warn(&warning.text));
     let outcome = match verified.answer() {
         Answer::Safe => Outcome::Done,
         Answer::Undecided => Outcome::Undecided,

@@ -168,3 +168,132 @@ fn a_changed_model_is_refused() {
     let check = "check --model arm/model.json --data logs";
     lab.run(check).fails_with(&["arm/model.json", "was changed after it was written"]);
 }
+
+/// An arm of two links of 0.5 m that turns in a plane, as a URDF with collision shapes.
+const ARM: &str = r#"<robot name="two"><link name="base"/>
+<link name="upper"><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
+  <geometry><cylinder length="0.5" radius="0.04"/></geometry></collision></link>
+<link name="fore"><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
+  <geometry><cylinder length="0.5" radius="0.03"/></geometry></collision></link>
+<joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/>
+  <axis xyz="0 0 1"/></joint>
+<joint name="elbow" type="continuous"><parent link="upper"/><child link="fore"/>
+  <origin xyz="0.5 0 0"/><axis xyz="0 0 1"/></joint></robot>"#;
+
+/// Makes a model of the arm, and writes the command of the first log as a plan.
+fn planned() -> Lab {
+    let lab = lab(8);
+    lab.write("arm.urdf", ARM);
+    lab.run(&format!("{MODEL} --robot arm.urdf")).exits(0);
+    let log = log(1);
+    let row = |(time, [a, b]): (&f64, &[f64; 2])| format!("{time},{a},{b}\n");
+    let rows: String = log.times.iter().zip(&log.command).map(row).collect();
+    lab.write("plan.csv", format!("time,shoulder_pos,elbow_pos\n{rows}"));
+    lab
+}
+
+#[test]
+fn a_plan_has_a_tube_in_radians_and_millimetres() {
+    let lab = planned();
+    let reach = "reach --model arm/model.json --plan plan.csv --out reach";
+    let run = lab.run(&format!("{reach} --robot arm.urdf")).exits(0);
+    for part in ["plan: 600 samples, 5.990 s", "shoulder ", "elbow ", " mrad ", " mm ", "reach/plan_tube.csv"] {
+        assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
+    }
+    let answer = lab.run(&format!("{reach} --robot arm.urdf --json")).exits(0).json();
+    fits("reach_plan", &answer);
+    let number = |kind: &str, at: usize| answer["plans"][0][kind][at]["distance"].as_f64().unwrap();
+    // The forearm's end is 0.5 m from the elbow and at most 1 m from the shoulder.
+    let joints = [number("joints", 0), number("joints", 1)];
+    assert!(number("links", 1) <= joints[0] + 0.5 * joints[1] + 1e-3, "{answer}");
+    assert!(number("links", 1) > 0.3 * joints[1] && joints[1] > 5e-3, "{answer}");
+    assert_eq!(lab.read("reach/plan.csv").lines().count(), 601);
+    assert_eq!(lab.read("reach/plan_tube.csv").lines().count(), 600);
+    // A log is a plan too, and without a robot there are no millimetres.
+    let run = lab.run("reach --model arm/model.json --data logs --out all").exits(0);
+    assert!(run.stdout.contains("motion_8: ") && !run.stdout.contains(" mm "), "{}", run.stdout);
+}
+
+#[test]
+fn a_plan_stays_clear_of_what_it_does_not_reach() {
+    let lab = planned();
+    let scenario = |x: f64, more: &str| {
+        let text = format!(
+            "model = \"arm/model.json\"\nplan = \"plan.csv\"\nrobot = \"arm.urdf\"\n{more}\n\
+             [[obstacle]]\nname = \"wall\"\nhalf-space = {{ normal = [-1, 0, 0], offset = {} }}\n",
+            -x
+        );
+        lab.write("cell.toml", text);
+    };
+    scenario(1.1, "");
+    let run = lab.run("verify cell.toml --out cell").exits(0);
+    assert!(run.stdout.starts_with("safe: "), "{}", run.stdout);
+    assert!(run.stdout.contains("up to 5.990 s each link stays clear"), "{}", run.stdout);
+    let answer = lab.run("verify cell.toml --out cell --json").exits(0).json();
+    fits("verify", &answer);
+    let distance = answer["motions"][0]["clearances"][0]["distance"].as_f64().unwrap();
+    assert!(lab.read("cell/verify.html").contains("All motions"));
+    // The wall is moved beyond what was proved, by less and by more than the sets.
+    let nearest = 1.1 - distance;
+    scenario(nearest - 2e-3, "");
+    let run = lab.run("verify cell.toml --out near").exits(1);
+    assert!(run.stdout.contains("overlaps `wall`") || run.stdout.contains("m from `wall`"), "{}", run.stdout);
+    assert!(lab.read("near/plan_closest.csv").starts_with("t,q1,q2,qd1,qd2\n0,"));
+    scenario(nearest - 0.2, "");
+    let run = lab.run("verify cell.toml --out far").exits(1);
+    assert!(run.stdout.contains("without any uncertainty no distance is proved either"), "{}", run.stdout);
+    scenario(1.1, "[stop]\nbrakes = \"brakes.toml\"\n");
+    lab.run("verify cell.toml --out cell").fails_with_last(&["cell.toml:", "[stop]", "leave"]);
+}
+
+#[test]
+fn plans_that_the_model_is_not_for_are_refused() {
+    let lab = planned();
+    let text = lab.read("plan.csv");
+    let fast: String = text.lines().enumerate().map(|(at, line)| match line.split_once(',') {
+        Some((time, rest)) if at > 0 => format!("{},{rest}\n", time.parse::<f64>().unwrap() / 3.0),
+        _ => format!("{line}\n"),
+    }).collect();
+    lab.write("fast.csv", fast);
+    let reach = "reach --model arm/model.json --out reach";
+    lab.run(&format!("{reach} --plan fast.csv")).fails_with_last(&["fast.csv", "was made of commands up to", "% of its speed"]);
+    lab.run(&format!("{reach} --plan none.csv")).fails_with_last(&["none.csv"]);
+    lab.write("short.csv", "time,shoulder_pos,elbow_pos\n0,0,0\n0.01,0,0\n");
+    lab.run(&format!("{reach} --plan short.csv")).fails_with_last(&["short.csv", "3 at least"]);
+    lab.write("nan.csv", text.replacen("0.02,", "0.02,nan,", 1));
+    lab.run(&format!("{reach} --plan nan.csv")).fails_with_last(&["nan.csv"]);
+    lab.write("other.csv", text.replace("shoulder", "wrist"));
+    lab.run(&format!("{reach} --plan other.csv")).fails_with_last(&["other.csv", "shoulder"]);
+    lab.write("other.urdf", ARM.replace("\"shoulder\"", "\"wrist\""));
+    lab.run(&format!("{reach} --plan plan.csv --robot other.urdf")).fails_with_last(&["other.urdf", "wrist", "--robot"]);
+    lab.write("cell.toml", "model = \"arm/model.json\"\nplan = \"plan.csv\"\n[[obstacle]]\nname = \"b\"\nsphere = { centre = [3, 0, 0], radius = 1 }\n");
+    lab.run("verify cell.toml --out cell").fails_with_last(&["cell.toml", "no `robot`"]);
+    lab.edit("cell.toml", |lines| lines[1] = "data = \"logs\"".into());
+    lab.run("verify cell.toml --out cell").fails_with_last(&["cell.toml", "no `plan`"]);
+}
+
+#[test]
+fn links_are_padded_for_a_planner_and_for_the_shield() {
+    let lab = planned();
+    let export = "export --model arm/model.json --to moveit --robot arm.urdf --out padding";
+    let run = lab.run(export).exits(0);
+    let file = lab.read("padding/moveit_padding.yaml");
+    assert!(run.stdout.contains("fore ") && run.stdout.contains("from its path"), "{}", run.stdout);
+    let number = |text: &str, key: &str| -> f64 {
+        let line = text.lines().find(|line| line.trim_start().starts_with(key)).unwrap();
+        line.split(':').nth(1).unwrap().split('#').next().unwrap().trim().parse().unwrap()
+    };
+    assert_eq!(number(&file, "default_robot_padding"), number(&file, "fore"));
+    assert!(number(&file, "upper") < number(&file, "fore"), "{file}");
+    let answer = lab.run(&format!("{export} --speed 0.25 --json")).exits(0).json();
+    fits("export_paddings", &answer);
+    let slow = answer["links"][1]["along_the_path"].as_f64().unwrap();
+    assert!(slow < number(&file, "fore") && slow > 1e-3, "{answer}");
+    assert!(slow <= answer["links"][1]["at_the_same_time"].as_f64().unwrap(), "{answer}");
+    lab.run(&export.replace(" --robot arm.urdf", "")).fails_with_last(&["--robot"]);
+    lab.run(&format!("{export} --speed 2")).fails_with_last(&["up to 1"]);
+    let shield = "export --model arm/model.json --to sara-shield --robot arm.urdf --data plan.csv \
+                  --capsules arm.urdf --out shield";
+    let run = lab.run(shield).exits(0);
+    assert!(run.stdout.contains("secure_radius 0.0"), "{}", run.stdout);
+}

@@ -6,7 +6,7 @@ use crate::prepare::settings::PrepareSettings;
 use crate::prepare::turns::{add_turns, extents, missing_turns};
 use reachtube_diagnose::axes;
 use reachtube_logs::LogFiles;
-use reachtube_recordings::{Defect, LoggedOptions, Run, check_limits, read_logged};
+use reachtube_recordings::{Defect, LoggedOptions, Run, Wanted, check_limits, read_logged};
 use reachtube_robot::Robot;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -166,8 +166,7 @@ impl Source {
             joints: &settings.joints,
             columns: &settings.columns,
             gains: !settings.gains.is_empty(),
-            torque: true,
-            command: false,
+            wanted: Wanted::Torques,
             gap_limit: settings.gap_limit(),
             until: self.until,
         };

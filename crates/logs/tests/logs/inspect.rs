@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::support::*;
 use reachtube_logs::inspect_logs;
-use reachtube_recordings::{ColumnSettings, GapLimit, LogSettings, LoggedOptions};
+use reachtube_recordings::{ColumnSettings, GapLimit, LogSettings, LoggedOptions, Wanted};
 
 fn options(columns: &ColumnSettings) -> LoggedOptions<'_> {
     LoggedOptions {
@@ -12,8 +12,7 @@ fn options(columns: &ColumnSettings) -> LoggedOptions<'_> {
         joints: &[],
         columns,
         gains: false,
-        torque: false,
-        command: false,
+        wanted: Wanted::AnyTorques,
         gap_limit: GapLimit::Usual,
         until: None,
     }

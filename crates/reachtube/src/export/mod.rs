@@ -42,6 +42,7 @@ mod flowstar;
 mod hylaa;
 mod juliareach;
 mod meaning;
+mod moveit;
 pub mod robot;
 pub mod shield;
 mod spaceex;
@@ -54,6 +55,7 @@ pub use case::{ExportCase, InitialState, bounds};
 pub use error::ExportError;
 pub use file::ExportFile;
 pub use meaning::Meaning;
+pub use moveit::{LinkPadding, Paddings};
 pub use system::{Factor, Polynomial, System, Term};
 pub use tool::{InputForm, Tool};
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::dialect::Dialect;
 use super::joints::{Column, Joints, Mismatch, by_pattern, listed};
 use super::name::{ColumnName, Origin, Quantity};
-use super::options::LoggedOptions;
+use super::options::{LoggedOptions, Wanted};
 use super::time_column::{TimeColumns, time_columns};
 use crate::defect::{Defect, DefectKind};
 
@@ -106,8 +106,10 @@ impl Finder<'_> {
         let qd = find(Quantity::Velocity, &measured)?.map(|(columns, _)| columns);
         let temperatures = find(Quantity::Temperature, &measured).ok().flatten();
         let temperatures = temperatures.map(|(columns, _)| columns);
-        let command = self.options.command.then(|| self.commands(&joints)).transpose()?;
-        let tau = if command.is_some() { None } else { self.torques(&joints)? };
+        let is_command = self.options.wanted == Wanted::Commands;
+        let command = is_command.then(|| self.commands(&joints)).transpose()?;
+        let has_torques = matches!(self.options.wanted, Wanted::Torques | Wanted::AnyTorques);
+        let tau = if has_torques { self.torques(&joints)? } else { None };
         let mut out = Assignment {
             time,
             q,
@@ -216,6 +218,16 @@ impl Finder<'_> {
     }
 
     fn positions(&self, joints: &Joints) -> Found<(Vec<Column>, Vec<Column>)> {
+        if self.options.wanted == Wanted::Plan {
+            // Columns that were named for logs need not be in a plan.
+            if let Ok(Some(columns)) = self.given_by("r", joints) {
+                return Ok((columns, vec![]));
+            }
+            let origins = [Origin::Target, Origin::Unstated, Origin::Measured];
+            if let Some(found) = self.matched(Quantity::Position, &origins, joints)? {
+                return Ok(found);
+            }
+        }
         let measured = [Origin::Measured, Origin::Unstated];
         if let Some(found) = self.find(Quantity::Position, &measured, joints)? {
             return Ok(found);
@@ -265,7 +277,7 @@ impl Finder<'_> {
         if let Some((columns, _)) = demanded {
             return Ok(Some((columns, TorqueKind::Demanded)));
         }
-        if !self.options.torque {
+        if self.options.wanted == Wanted::AnyTorques {
             return Ok(current.ok().flatten().map(|(columns, _)| (columns, TorqueKind::Current)));
         }
         if let Some((columns, _)) = current? {

@@ -12,7 +12,7 @@ use super::dialect::Dialect;
 use super::even_times::with_times;
 use super::joints::{Column, Joints, listed};
 use super::name::Quantity;
-use super::options::LoggedOptions;
+use super::options::{LoggedOptions, Wanted};
 use super::recognise::{Numbers, Units, recognise};
 use super::settings::ColumnSettings;
 use super::table::{ReadColumn, Table};
@@ -32,10 +32,9 @@ const POSSIBLE: [f64; 2] = [-1e9, 1e9];
 pub struct Logged {
     /// The recording, with columns in the order of the robot's joints. Motor currents stand in
     /// place of its torques where gains were announced. Torques are 0 where a log has none, which
-    /// only [`LoggedOptions::torque`] = `false` accepts.
+    /// [`Wanted::Torques`] does not accept.
     pub run: Run,
-    /// Commanded positions, row-major K x n, rad; empty unless [`LoggedOptions::command`] asks for
-    /// them.
+    /// Commanded positions, row-major K x n, rad; empty unless they are wanted.
     pub command: Vec<f64>,
     /// What was understood of columns and units; `None` for a file in the format of
     /// `docs/recordings.md`.
@@ -61,7 +60,7 @@ pub struct Logged {
 /// # Examples
 ///
 /// ```
-/// use reachtube_recordings::{ColumnSettings, GapLimit, LoggedOptions, read_logged};
+/// use reachtube_recordings::{ColumnSettings, GapLimit, LoggedOptions, Wanted, read_logged};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("log.csv");
@@ -74,8 +73,7 @@ pub struct Logged {
 ///     joints: &[],
 ///     columns: &columns,
 ///     gains: false,
-///     torque: true,
-///     command: false,
+///     wanted: Wanted::Torques,
 ///     gap_limit: GapLimit::Usual,
 ///     until: None,
 /// };
@@ -98,7 +96,7 @@ pub fn read_logged(files: &[PathBuf], options: &LoggedOptions) -> Result<Logged,
         [only]
             if *options.columns == ColumnSettings::default()
                 && is_recording(only)
-                && !options.command =>
+                && options.wanted != Wanted::Commands =>
         {
             as_it_is(files, &contents[0], only, options)?
         }
@@ -224,7 +222,8 @@ impl Log<'_> {
         let name = files[0].display();
         let named = |note: String| format!("{name}: {note}");
         let mut notes: Vec<String> = assignment.notes.iter().cloned().map(named).collect();
-        let is_missed = qd.is_none() && command.is_none();
+        let has_torques = matches!(options.wanted, Wanted::Torques | Wanted::AnyTorques);
+        let is_missed = qd.is_none() && has_torques;
         notes.extend(units.notes(!is_missed).map(named));
         notes.extend(turn_notes(&mut run, files, &tables[0], &assignment.joints, options));
         if qd.is_none() {

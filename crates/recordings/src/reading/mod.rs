@@ -33,6 +33,6 @@ pub use files::{csv_files, group_files};
 pub use log::{Logged, read_logged};
 pub use log_settings::{LogSettings, LogTime};
 pub use named::{NamedColumns, NamedRun, read_named};
-pub use options::LoggedOptions;
+pub use options::{LoggedOptions, Wanted};
 pub use settings::ColumnSettings;
 pub use understood::Understood;

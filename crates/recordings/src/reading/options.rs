@@ -2,6 +2,19 @@ use super::settings::ColumnSettings;
 use crate::axis::Axis;
 use crate::gap_limit::GapLimit;
 
+/// What is read of logs besides positions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// Torques; a log without them is refused.
+    Torques,
+    /// Torques of logs that have them.
+    AnyTorques,
+    /// Commanded positions, and no torque; a log without them is refused.
+    Commands,
+    /// Nothing: the positions are a plan's. Commanded positions count before others.
+    Plan,
+}
+
 /// How logs are read.
 #[derive(Debug, Clone, Copy)]
 pub struct LoggedOptions<'a> {
@@ -14,10 +27,8 @@ pub struct LoggedOptions<'a> {
     pub columns: &'a ColumnSettings,
     /// Whether gains turn motor currents into torques.
     pub gains: bool,
-    /// Whether a log without torques is refused.
-    pub torque: bool,
-    /// Whether commanded positions are read, and no torque; a log without them is refused.
-    pub command: bool,
+    /// What is read besides positions.
+    pub wanted: Wanted,
     /// Longest time between two samples that is accepted.
     pub gap_limit: GapLimit,
     /// Time after the first sample beyond which samples are not used, s.

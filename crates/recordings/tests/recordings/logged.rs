@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use reachtube_recordings::{
-    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, csv_files, group_files, read_logged,
+    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, csv_files, group_files, read_logged,
 };
 use tempfile::TempDir;
 
@@ -29,8 +29,7 @@ fn options<'a>(robot: Option<&'a [Axis]>, columns: &'a ColumnSettings) -> Logged
         joints: &[],
         columns,
         gains: false,
-        torque: true,
-        command: false,
+        wanted: Wanted::Torques,
         gap_limit: GapLimit::Usual,
         until: None,
     }
@@ -265,7 +264,7 @@ fn joints_and_torques_that_are_missing_are_named_with_the_remedy() {
     assert!(said.contains("--gains"), "{said}");
     let with_gains = LoggedOptions { gains: true, ..options };
     assert_eq!(read(&both, &with_gains).unwrap().understood.unwrap().torque, "current");
-    let optional = LoggedOptions { torque: false, ..options };
+    let optional = LoggedOptions { wanted: Wanted::AnyTorques, ..options };
     assert!(read(&format!("t,{}{rows}", names("q{}", 1).join(",")), &optional).is_ok());
 }
 

@@ -2,6 +2,7 @@
 
 mod cautions;
 mod common;
+mod plans;
 mod real_logs;
 mod second_way;
 mod servo;

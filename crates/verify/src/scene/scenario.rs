@@ -24,13 +24,17 @@ pub(crate) const WALKING: f64 = 1.6;
 /// Number of parts into which a step is divided, at most, where its enclosure comes too close.
 const REFINE: u32 = 8;
 
-/// A question: a model, recorded motions, and what the robot must stay clear of.
+/// A question: a model, recorded or planned motions, and what the robot must stay clear of.
 #[derive(Debug)]
 pub struct Scenario {
     /// The model file.
     pub model: PathBuf,
-    /// The recordings whose inputs the model moves under.
-    pub data: PathBuf,
+    /// The recordings whose inputs the model moves under; none if there are plans.
+    pub data: Option<PathBuf>,
+    /// Plans that the arm follows under its controller: a CSV file, or a folder of them.
+    pub plan: Option<PathBuf>,
+    /// The robot that follows plans: an embedded one, or a TOML or URDF file.
+    pub robot: Option<String>,
     /// The suites to use; all if empty.
     pub suites: Vec<String>,
     /// The time after which samples are not used, s.
@@ -59,7 +63,9 @@ pub struct Scene {
 #[serde(deny_unknown_fields)]
 struct File {
     model: PathBuf,
-    data: PathBuf,
+    data: Option<PathBuf>,
+    plan: Option<PathBuf>,
+    robot: Option<String>,
     #[serde(default)]
     suites: Vec<String>,
     until: Option<Spanned<f64>>,
@@ -139,6 +145,15 @@ struct MeshTable {
     rpy: [f64; 3],
 }
 
+/// Returns the path of a robot's file from the working directory; the name of an embedded robot
+/// stays.
+fn in_folder(folder: &Path, name: &str) -> String {
+    match Path::new(name).extension() {
+        Some(_) => folder.join(name).display().to_string(),
+        None => name.into(),
+    }
+}
+
 fn one() -> f64 {
     1.0
 }
@@ -165,14 +180,16 @@ impl Scenario {
     pub fn parse(text: String, origin: &str, folder: &Path) -> Result<Self> {
         let file: File = toml::from_str(&text)
             .map_err(|e| Error::Syntax { origin: origin.into(), message: e.to_string() })?;
-        let capsules = file.capsules.as_ref().map(|path| folder.join(path));
         let until = file.until.as_ref().map(|until| *until.get_ref());
+        let within = |path: &PathBuf| folder.join(path);
         Ok(Self {
             model: folder.join(&file.model),
-            data: folder.join(&file.data),
+            data: file.data.as_ref().map(within),
+            plan: file.plan.as_ref().map(within),
+            robot: file.robot.as_ref().map(|name| in_folder(folder, name)),
             suites: file.suites.clone(),
             until,
-            capsules,
+            capsules: file.capsules.as_ref().map(within),
             text,
             origin: origin.into(),
             folder: folder.into(),
@@ -224,6 +241,49 @@ impl Scenario {
         }
         let clearance = clearance.as_ref().map_or(0.0, |clearance| *clearance.get_ref());
         Ok(Scene { obstacles, clearance, refine: parts })
+    }
+
+    /// Returns the recordings; names them if the scenario has none, or plans, which its model
+    /// cannot follow.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Invalid`].
+    pub fn recordings(&self) -> Result<&Path> {
+        let remedy = "a model of torques needs `data = \"FOLDER\"`, its recordings; plans need a \
+                      model of the arm under its controller, which `model` makes of commanded and \
+                      actual positions";
+        match (&self.data, &self.plan) {
+            (Some(data), None) => Ok(data),
+            (_, Some(_)) => Err(self.invalid(0, "", "it has a `plan`", remedy)),
+            (None, None) => Err(self.invalid(0, "", "there is no `data`", remedy)),
+        }
+    }
+
+    /// Returns the plans and the robot of a scenario whose model is of an arm under its controller.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Invalid`] without one of them, and with recordings or stops.
+    pub fn planned(&self) -> Result<(&Path, &str)> {
+        let invalid = |problem: &str, remedy: &str| self.invalid(0, "", problem, remedy);
+        let Some(plan) = &self.plan else {
+            let remedy = "the model is of an arm under its controller: give `plan = \"FILE\"`, a CSV \
+                          file of commanded positions, or a folder of them";
+            return Err(invalid("there is no `plan`", remedy));
+        };
+        let Some(robot) = &self.robot else {
+            let remedy = "give `robot = \"FILE\"`, the URDF or TOML file of the arm";
+            return Err(invalid("there is no `robot`, whose links follow the plan", remedy));
+        };
+        if self.data.is_some() || !self.suites.is_empty() {
+            return Err(invalid("it has `data` or `suites` beside a `plan`", "leave them out"));
+        }
+        if let Some(stop) = &self.file.stop {
+            let remedy = "stops need a model of torques; leave [stop] out";
+            return Err(self.invalid(stop.span().start, "stop: ", "the model has no torques", remedy));
+        }
+        Ok((plan, robot))
     }
 
     /// Returns the stops of the scenario, with their brakes; `None` if it has none. The torque of

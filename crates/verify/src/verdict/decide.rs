@@ -16,7 +16,7 @@ use crate::verdict::stops::MotionStops;
 type Result<T> = std::result::Result<T, Error>;
 
 /// Numbers of parts of a step that are tried.
-const PARTS: [u32; 2] = [64, 512];
+pub(super) const PARTS: [u32; 2] = [64, 512];
 
 /// Halvings of the interval in which the factor of the sets lies, for motions and for stops.
 const HALVINGS: [u32; 2] = [6, 4];
@@ -30,6 +30,8 @@ pub enum NextStep {
     /// X0 and U scaled by this factor about their centres, with steps divided into 64 parts, prove
     /// that the links stay clear.
     SmallerSets(f64),
+    /// The plan at this part of its speed is proved to stay clear.
+    Slower(f64),
     /// Without any uncertainty no distance is proved either: the nominal motion itself comes too
     /// close.
     Nominal,

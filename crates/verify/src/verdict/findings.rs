@@ -145,6 +145,14 @@ fn next(v: &Verification) -> Option<Finding> {
             ),
         )
         .with("factor", factor),
+        NextStep::Slower(part) => info(
+            Code::PlanTooFast.into(),
+            format!(
+                "{case}: at {} % of its speed, all links are proved to stay clear.",
+                (100.0 * part).floor()
+            ),
+        )
+        .with("part", part),
         NextStep::Nominal => info(
             Code::NominalTooClose.into(),
             format!(

@@ -5,6 +5,7 @@ pub(crate) mod decide;
 pub(crate) mod findings;
 mod gradient;
 mod part_of_step;
+pub(crate) mod planned;
 mod question;
 pub(crate) mod stop_verdict;
 mod stop_witness;

@@ -90,10 +90,7 @@ pub fn verify(
     (body, scene): (&Body, &Scene),
     stops: Option<&StopRule>,
 ) -> Result<Vec<Verification>> {
-    let mut capsules = body.capsules().iter();
-    if !capsules.any(|capsule| scene.obstacles.iter().any(|it| it.concerns(capsule.joint))) {
-        return Err(Error::NoPair);
-    }
+    scene.refuse_without_pair(body)?;
     let reached = reach(problem, tube)?;
     if let Some(still) = reached.iter().find(|reach| reach.times.len() < 2 && reach.lost.is_none())
     {
@@ -111,6 +108,26 @@ pub fn verify(
         }
     };
     cases.map(decide).collect()
+}
+
+/// Returns the answer of a motion that was found and of a proof.
+pub(super) fn answered(closest: Option<&Witness>, is_proved: bool, scene: &Scene) -> Answer {
+    match closest {
+        Some(found) if found.distance < scene.clearance - TOUCH => Answer::Unsafe,
+        _ if is_proved => Answer::Safe,
+        _ => Answer::Undecided,
+    }
+}
+
+impl Scene {
+    /// Refuses obstacles that concern no link with a capsule.
+    pub(super) fn refuse_without_pair(&self, body: &Body) -> Result<()> {
+        let concerns = |joint: usize| self.obstacles.iter().any(|it| it.concerns(joint));
+        match body.capsules().iter().any(|capsule| concerns(capsule.joint)) {
+            true => Ok(()),
+            false => Err(Error::NoPair),
+        }
+    }
 }
 
 impl Question<'_> {
@@ -137,11 +154,7 @@ impl Question<'_> {
             let found = open.filter_map(|pair| approach.closest(pair));
             found.min_by(|a, b| a.distance.total_cmp(&b.distance))
         };
-        let answer = match &closest {
-            Some(found) if found.distance < scene.clearance - TOUCH => Answer::Unsafe,
-            _ if proved && lost.is_none() => Answer::Safe,
-            _ => Answer::Undecided,
-        };
+        let answer = answered(closest.as_ref(), proved && lost.is_none(), scene);
         let advice = match (answer, &lost) {
             (Answer::Undecided, Some(_)) => Some(NextStep::SetLost),
             (Answer::Undecided, None) if is_open => Some(advice(self, index)?),

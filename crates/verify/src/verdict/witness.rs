@@ -5,6 +5,7 @@ use reachtube_arm::OfArm;
 use reachtube_conform::data::Case;
 use reachtube_conform::{Problem, UncertaintySets};
 use reachtube_reach::Disturbance;
+use reachtube_robot::Robot;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -95,7 +96,7 @@ impl Approach<'_> {
         for _ in 0..ROUNDS {
             let Some(q) = motion.states.get(sample * 2 * n..sample * 2 * n + n) else { break };
             let functional =
-                [self.slope(pair, q, case.grid.times()[sample]), vec![0.0; n]].concat();
+                [self.places().slope(pair, q, case.grid.times()[sample]), vec![0.0; n]].concat();
             let (start, inputs) = self.vertices(&motion, sample, &functional);
             motion = Motion::new(problem.dynamics(), case, &start, &inputs);
             let found = self.nearest(pair, &motion, &start, &inputs);
@@ -154,7 +155,8 @@ impl Approach<'_> {
         let (n, times) = (self.case.parts(), self.case.grid.times());
         let distances = motion.states.chunks_exact(2 * n).zip(times);
         let at = (pair.joint, pair.index);
-        let distances = distances.map(|(x, t)| (self.distance(at, &x[..n], *t), *t));
+        let places = self.places();
+        let distances = distances.map(|(x, t)| (places.distance(at, &x[..n], *t), *t));
         let (distance, time) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let samples = motion.states.len() / (2 * n);
         Some(Witness {
@@ -170,6 +172,22 @@ impl Approach<'_> {
         })
     }
 
+    /// Returns the links and the obstacles.
+    pub(super) fn places(&self) -> Places<'_> {
+        Places { robot: self.problem.robot(), body: self.body, scene: self.scene }
+    }
+}
+
+/// The links of a robot and the obstacles.
+#[derive(Clone, Copy)]
+pub(super) struct Places<'a> {
+    pub robot: &'a Robot,
+    pub body: &'a Body,
+    pub scene: &'a Scene,
+}
+
+impl Places<'_> {
+    /// Returns the slope of the distance of a link from an obstacle in the joints' positions.
     pub(super) fn slope(&self, pair: &Clearance, q: &[f64], time: f64) -> Vec<f64> {
         let mut moved = q.to_vec();
         let mut by = |i: usize| {
@@ -187,7 +205,7 @@ impl Approach<'_> {
     /// Returns the distance of the link that a joint moves from an obstacle, by their indices, in
     /// floating point.
     pub(super) fn distance(&self, (joint, index): (usize, usize), q: &[f64], time: f64) -> f64 {
-        let frame = &self.problem.robot().link_placements(q)[joint];
+        let frame = &self.robot.link_placements(q)[joint];
         let obstacle = &self.scene.obstacles[index];
         let of_link = self.body.capsules().iter().filter(|capsule| capsule.joint == joint);
         let distances = of_link.map(|capsule| {

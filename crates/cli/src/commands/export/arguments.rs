@@ -13,12 +13,15 @@ use crate::data_arguments::DataArguments;
 use crate::error::{Error, Result};
 use crate::lock_arguments::LockArguments;
 use crate::opened::OpenedCheck;
-use crate::option_values::{Choices, choice, seconds, trimmed};
+use crate::option_values::{Choices, choice, part, seconds, trimmed};
 use crate::output;
 
 /// An export has neither a model nor a robot that it could take.
 const NO_MODEL: &str = "only mjcf and urdf take --robot; name a model that `model` or `conform` \
                         wrote with --model";
+
+const BOTH: &str = "--model and --robot are both given, but a model has its robot; only a model of an arm under \
+                    its controller, with --to moveit or sara-shield, needs both";
 
 const HELP: &str = "\
 Tools, and what each supports:
@@ -34,6 +37,7 @@ Tools, and what each supports:
               its file that --update names, cut to what the motions reach
   ros2-control
               tolerances of the trajectory controller, of a model of the arm under its controller
+  moveit      paddings of the links of a URDF, of a model of the arm under its controller
 Unsupported models are refused. The first lines of each file state what the tool computes.
 
 Examples:
@@ -44,6 +48,7 @@ Examples:
   reachtube export --model model.json --to sara-shield --data recordings --suites A --until 0.2 \\
     --update robot_parameters_schunk.yaml --out shield
   reachtube export --model arm/model.json --to ros2-control --out tolerances
+  reachtube export --model arm/model.json --to moveit --robot arm.urdf --speed 0.5 --out padding
 
 Each suite, or run with a nominal motion of its own, gets a folder, which also holds our bounds
 (bounds.csv at samples, tube.csv between them) and the input (inputs.csv). docs/export.md says how
@@ -60,6 +65,7 @@ const TARGETS: Choices = &[
     ("urdf", "the robot"),
     ("sara-shield", "SaRA shield"),
     ("ros2-control", "tolerances of joint_trajectory_controller"),
+    ("moveit", "paddings of links for MoveIt"),
 ];
 
 const FORMS: Choices = &[
@@ -75,9 +81,13 @@ pub(crate) struct Arguments {
     /// Model file that `model` or `conform` wrote
     #[arg(long, value_name = "FILE", required_unless_present = "robot")]
     pub model: Option<PathBuf>,
-    /// Robot in place of a model, for mjcf and urdf
-    #[arg(long, value_name = "ROBOT", conflicts_with = "model")]
+    /// Robot in place of a model, for mjcf and urdf; for moveit and sara-shield the robot
+    /// of a model of an arm under its controller
+    #[arg(long, value_name = "ROBOT")]
     pub robot: Option<String>,
+    /// Part of the recorded speeds that plans reach, for moveit
+    #[arg(long, value_name = "PART", value_parser = part, hide_short_help = true)]
+    pub speed: Option<f64>,
     #[command(flatten)]
     pub lock: LockArguments,
     /// The URDF, or robot_parameters and trajectory_parameters of the shield, to change; all other
@@ -130,6 +140,9 @@ pub(crate) enum Target {
     /// The tolerances of ROS 2's trajectory controller.
     #[serde(rename = "ros2-control")]
     Ros2Control,
+    /// The paddings of links for MoveIt.
+    #[serde(rename = "moveit")]
+    Moveit,
     /// A model for a tool.
     #[serde(untagged)]
     Tool(Tool),
@@ -142,6 +155,7 @@ impl Target {
             Self::Urdf => "URDF".into(),
             Self::SaraShield => "the SaRA shield".into(),
             Self::Ros2Control => "ros2_control".into(),
+            Self::Moveit => "MoveIt".into(),
             Self::Tool(tool) => tool.to_string(),
         }
     }
@@ -152,13 +166,18 @@ pub(super) fn refuse_unused(args: &Arguments) -> Result<()> {
     let to = args.to;
     let has_recordings = matches!(to, Target::Tool(_) | Target::SaraShield);
     // The joints of a URDF that is changed may be locked in the model.
-    let has_locks = args.robot.is_some() || !args.update.is_empty();
+    let is_robot = matches!(to, Target::Mjcf | Target::Urdf);
+    let has_locks = (args.robot.is_some() && is_robot) || !args.update.is_empty();
+    if args.robot.is_some() && args.model.is_some() && !matches!(to, Target::Moveit | Target::SaraShield) {
+        return Err(Error::setting(BOTH));
+    }
     let options = [
         ("data", args.data.is_some(), has_recordings),
         ("suites", !args.suites.is_empty(), has_recordings),
         ("until", args.until.is_some(), has_recordings),
         ("max-gap", args.max_gap.is_some(), has_recordings),
         ("input", args.input.is_some(), matches!(to, Target::Tool(_))),
+        ("speed", args.speed.is_some(), matches!(to, Target::Moveit)),
         ("capsules", args.capsules.is_some(), matches!(to, Target::SaraShield)),
         ("lock", !args.lock.lock.is_empty(), has_locks && !matches!(to, Target::SaraShield)),
     ];

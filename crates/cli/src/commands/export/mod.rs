@@ -6,9 +6,12 @@ mod shield;
 use std::path::PathBuf;
 
 use reachtube::export::robot::{mjcf_files, updated_urdf_files, urdf_files};
-use reachtube::export::{ExportCase, ExportError, ExportFile, InputForm, Meaning, Tool, files};
+use reachtube::export::{
+    ExportCase, ExportError, ExportFile, InputForm, LinkPadding, Meaning, Paddings, Tool, files,
+};
 use reachtube::finding::Table;
-use reachtube::tracking::TrackingModel;
+use reachtube::pipeline::NOT_USEFUL;
+use reachtube::tracking::{TrackingModel, width_up};
 use reachtube::{Robot, write};
 use reachtube_files::SealedFile;
 use schemars::JsonSchema;
@@ -94,6 +97,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         Target::Urdf => robot(args, &updated, json),
         Target::SaraShield => shield::run(args, json),
         Target::Ros2Control => tolerances(args, json),
+        Target::Moveit => paddings(args, json),
         Target::Tool(tool) => model(args, tool, json),
     }
 }
@@ -134,6 +138,57 @@ fn tolerances(args: &Arguments, json: bool) -> Result<Outcome> {
     let joints = model.joints.iter().map(|joint| joint.name.as_str()).collect();
     let result = TolerancesExport { joints, file: path.display().to_string() };
     output::show(json, &result, || format!("exported to ros2_control:\n  {}\n", path.display()))?;
+    Ok(Outcome::Done)
+}
+
+/// The result of `export --to moveit`.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct PaddingsExport<'a> {
+    /// The part of the recorded speeds up to which the paddings hold.
+    part: f64,
+    /// The time by which the arm is late on its path, s.
+    late_by: f64,
+    /// The links.
+    links: &'a [LinkPadding],
+    /// Path of the file.
+    file: String,
+}
+
+/// Writes the paddings of links, of a model of an arm under its controller.
+fn paddings(args: &Arguments, json: bool) -> Result<Outcome> {
+    let no_urdf = || Error::setting("MoveIt pads the links of a URDF; name it with --robot");
+    let urdf = args.robot.as_ref().ok_or_else(no_urdf)?;
+    let model = TrackingModel::open(model_file(args)?)?;
+    let Paddings { links, deviations, file } =
+        Paddings::new(&model, urdf.as_ref(), args.speed.unwrap_or(1.0))?;
+    let path = args.out.join(&file.name);
+    write_all(std::slice::from_ref(&path), std::iter::once(&file))?;
+    if !model.is_useful() {
+        output::warn(NOT_USEFUL);
+    }
+    let result = PaddingsExport {
+        part: deviations.part,
+        late_by: deviations.late_by,
+        links: &links,
+        file: path.display().to_string(),
+    };
+    let row = |of: &LinkPadding| {
+        let [path, time] = [of.along_the_path, of.at_the_same_time].map(|of| width_up(of, "m"));
+        vec![of.link.clone(), path, time]
+    };
+    let text = || {
+        format!(
+            "exported to MoveIt: how far links can be from a plan of up to {} % of the recorded \
+             speeds\n{}  {}\n",
+            100.0 * deviations.part,
+            Table::new(
+                ["link", "from its path", "from its place at the same time"],
+                links.iter().map(row).collect()
+            ),
+            path.display()
+        )
+    };
+    output::show(json, &result, text)?;
     Ok(Outcome::Done)
 }
 

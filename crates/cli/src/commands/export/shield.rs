@@ -1,7 +1,10 @@
 //! `reachtube export --to sara-shield`.
 
 use reachtube::arm::ArmModel;
+use reachtube::conform::SuiteReach;
 use reachtube::finding::Table;
+use reachtube::pipeline::{NOT_USEFUL, followed, robot_of};
+use reachtube::tracking::{Plan, TrackingModel};
 use std::path::{Path, PathBuf};
 
 use reachtube::Robot;
@@ -9,11 +12,12 @@ use reachtube::export::shield::{LinkMargin, Shield, ShieldFile};
 use reachtube::number::at_least;
 use reachtube::verify::Capsules;
 use reachtube::write;
+use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::arguments::{Arguments, open, write_all};
-use crate::error::Result;
+use super::arguments::{Arguments, model_file, open, write_all};
+use crate::error::{Error, Result};
 use crate::outcome::Outcome;
 use crate::output;
 
@@ -21,15 +25,14 @@ use crate::output;
 pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&args.out.join("robot_parameters.yaml"))?;
     let updates = args.update.iter().map(|path| read(path)).collect::<Result<Vec<_>>>()?;
-    let opened = open(args, "the SaRA shield")?;
-    let robot = Robot::from_description(&opened.model.robot())?;
+    let (robot, reached) = motions(args)?;
     let named = Capsules::open(args.capsules.as_deref(), &robot);
     let capsules = match (&args.capsules, updates.is_empty()) {
         // The shield's own file may have the capsules.
         (None, false) => named.ok(),
         _ => Some(named?),
     };
-    let shield = Shield::new(&robot, capsules.as_ref(), &opened.reach()?, &updates)?;
+    let shield = Shield::new(&robot, capsules.as_ref(), &reached, &updates)?;
     let paths: Vec<PathBuf> = shield.files.iter().map(|file| args.out.join(&file.name)).collect();
     write_all(&paths, shield.files.iter())?;
     if shield.secure_radius > shield.largest_capsule {
@@ -41,6 +44,29 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     }
     output::show(json, &ShieldExport::new(&shield, &paths), || text(&shield, &paths))?;
     Ok(Outcome::Done)
+}
+
+/// Returns the robot, and its reachable sets: over recordings, or over plans that the arm follows
+/// under its controller.
+fn motions(args: &Arguments) -> Result<(Robot, Vec<SuiteReach>)> {
+    let path = model_file(args)?;
+    if !TrackingModel::is_at(path) {
+        let opened = open(args, "the SaRA shield")?;
+        return Ok((Robot::from_description(&opened.model.robot())?, opened.reach()?));
+    }
+    let model = TrackingModel::open(path)?;
+    let (Some(robot), Some(plans)) = (&args.robot, &args.data) else {
+        return Err(Error::setting(
+            "the model is of an arm under its controller; give the robot with --robot and its \
+             plans with --data",
+        ));
+    };
+    let plans = Plan::read(plans, &model, args.until)?;
+    let reached = plans.iter().map(|plan| followed(&model, plan)).collect::<Result<_, _>>()?;
+    if !model.is_useful() {
+        output::warn(NOT_USEFUL);
+    }
+    Ok((robot_of(&model, robot)?, reached))
 }
 
 fn read(path: &Path) -> Result<ShieldFile> {
