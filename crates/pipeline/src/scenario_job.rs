@@ -102,11 +102,7 @@ impl ScenarioJob {
     }
 }
 
-fn recorded(
-    opened: Opened,
-    scenario: &Scenario,
-    (body, scene): (Body, Scene),
-) -> Result<Verified> {
+fn recorded(opened: Opened, scenario: &Scenario, (body, scene): (Body, Scene)) -> Result<Verified> {
     let Opened { model, problem, tube } = &opened;
     let input_set = |rates: &[f64]| problem.input_set_at(&tube.sets, rates);
     let rule = scenario.stop(problem.robot(), &input_set)?;

@@ -139,7 +139,11 @@ impl JointTracking {
     /// # Guarantee
     ///
     /// Outer, directed rounding.
-    pub(crate) fn nominal(&self, command: Interval, [speed, acceleration]: [Interval; 2]) -> Interval {
+    pub(crate) fn nominal(
+        &self,
+        command: Interval,
+        [speed, acceleration]: [Interval; 2],
+    ) -> Interval {
         let direction = enclosed_direction(speed, self.largest_speed);
         let terms = [Interval::ONE, speed, acceleration, direction];
         let pairs = terms.into_iter().zip(self.factors());
@@ -222,7 +226,8 @@ impl SealedFile for TrackingModel {
             let sizes = [radius, radius_per_speed, largest_speed, joint.largest_change];
             joint.factors().into_iter().chain(sizes)
         });
-        match self.joints.is_empty() || !numbers.chain([self.factor, self.step]).all(f64::is_finite) {
+        match self.joints.is_empty() || !numbers.chain([self.factor, self.step]).all(f64::is_finite)
+        {
             true => Err("it has no joints, or numbers that are not finite".into()),
             false => Ok(()),
         }

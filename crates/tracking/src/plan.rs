@@ -48,16 +48,44 @@ impl Plan {
             LogFiles::Csv(files) => {
                 let (plan, _) = reading.logged(&files, Wanted::Plan)?;
                 let (file, samples) = (plan.file.clone(), plan.times.len());
-                if samples < FEWEST_SAMPLES { Err(Error::Short { file, samples }) } else { Ok(plan) }
+                if samples < FEWEST_SAMPLES {
+                    Err(Error::Short { file, samples })
+                } else {
+                    Ok(plan)
+                }
             }
         };
         logs.into_iter().map(plan).collect()
     }
 
-    /// Returns the plan at a part of its speed, above 0.
+    /// Returns the plan at a part of its speed, above 0 and up to 1. Steps are divided so that they
+    /// stay about as long as they were; the command in between is the cubic polynomial with the
+    /// positions and speeds of both samples.
+    ///
+    /// # Panics
+    ///
+    /// Panics with fewer than 3 samples.
     #[must_use]
     pub fn slowed(&self, part: f64) -> Self {
-        Self { times: self.times.iter().map(|time| time / part).collect(), ..self.clone() }
+        let (n, pieces) = (self.joints.len(), (1.0 / part).round().max(1.0) as usize);
+        let last = self.times.len() - 1;
+        let (mut times, mut command) = (Vec::new(), Vec::new());
+        for index in 0..=last * pieces {
+            let (k, s) = (index / pieces, (index % pieces) as f64 / pieces as f64);
+            let step = if k < last { self.times[k + 1] - self.times[k] } else { 0.0 };
+            times.push((self.times[k] + s * step) / part);
+            command.extend((0..n).map(|joint| {
+                let (at, speed) = (k * n + joint, |k: usize| self.rates(k, joint)[0].mid());
+                if s == 0.0 {
+                    return self.command[at];
+                }
+                let [start, end] = [self.command[at], self.command[at + n]];
+                let [first, second] = [step * speed(k), step * speed(k + 1)];
+                let rise = s * s * (3.0 - 2.0 * s);
+                start + rise * (end - start) + s * (1.0 - s) * ((1.0 - s) * first - s * second)
+            }));
+        }
+        Self { times, command, ..self.clone() }
     }
 
     /// Returns the name of the file.
@@ -117,7 +145,8 @@ impl TrackingModel {
             let [here, next] = [k, k + 1].map(|k| plan.rates(k, joint)[0]);
             let duration = Interval::point(plan.times[k + 1]) - Interval::point(plan.times[k]);
             let steps = (duration.hi() / self.step - AS_LONG).ceil().max(1.0);
-            let change = Interval::point(self.joints[joint].largest_change) * Interval::point(steps);
+            let change =
+                Interval::point(self.joints[joint].largest_change) * Interval::point(steps);
             here.hull(next) + Interval::centred(0.0, (change / duration).hi())
         };
         Ok(PlanTube {

@@ -77,9 +77,8 @@ impl JointTracking {
         let acceleration = point(part).sqr() * self.largest_acceleration;
         let late = point(late);
         let by_speed = (late + self.speed).abs() + point(self.radius_per_speed);
-        let by_acceleration = point(self.acceleration.abs())
-            + late.sqr() * 0.5
-            + late * point(step) * 0.5;
+        let by_acceleration =
+            point(self.acceleration.abs()) + late.sqr() * 0.5 + late * point(step) * 0.5;
         let fixed = point(self.offset.abs()) + self.direction.abs() + self.radius;
         (fixed + by_speed * speed + by_acceleration * acceleration).hi()
     }

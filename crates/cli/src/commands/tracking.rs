@@ -8,12 +8,10 @@ use reachtube::finding::Table;
 use reachtube::pipeline::{body_of, followed, robot_of};
 use reachtube::recordings::ColumnSettings;
 use reachtube::robot::{Lock, Robot};
-use reachtube::tracking::{
-    JointTracking, MadeModel, Plan, Reading, TrackingModel, make, width_up,
-};
+use reachtube::scalar::rounding::sub_up;
+use reachtube::tracking::{JointTracking, MadeModel, Plan, Reading, TrackingModel, make, width_up};
 use reachtube::verify::{Body, Margin};
 use reachtube::write;
-use reachtube::scalar::rounding::sub_up;
 use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -174,10 +172,9 @@ pub(crate) fn reach(
     let sets = plans.iter().map(|plan| followed(&model, plan));
     let sets: Vec<SuiteReach> = sets.collect::<Result<_, _>>()?;
     let written = Written::all(&sets, out);
-    output::claim_all(written.iter().flat_map(|file| [&file.samples, &file.tube]))?;
-    for (name, content) in written.iter().flat_map(Written::contents) {
-        write::atomically(&out.join(name), |file| file.write_all(&content))?;
-    }
+    let contents = written.iter().flat_map(Written::contents);
+    let files: Vec<_> = contents.map(|(name, content)| (out.join(name), content)).collect();
+    output::write_all(files.iter().map(|(path, content)| (path, &**content)))?;
     if !model.is_useful() {
         output::warn(reachtube::pipeline::NOT_USEFUL);
     }
@@ -210,7 +207,8 @@ impl PlanOutput {
             time: margin.time,
         };
         let margins = |body: &'_ Body| body.margins(file.reach);
-        let links = body.into_iter().flat_map(|body| margins(body).into_iter().map(move |m| (body, m)));
+        let links =
+            body.into_iter().flat_map(|body| margins(body).into_iter().map(move |m| (body, m)));
         Self {
             plan: file.reach.suite.clone(),
             samples: times.len(),

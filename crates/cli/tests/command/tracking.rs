@@ -171,9 +171,11 @@ fn a_changed_model_is_refused() {
 
 /// An arm of two links of 0.5 m that turns in a plane, as a URDF with collision shapes.
 const ARM: &str = r#"<robot name="two"><link name="base"/>
-<link name="upper"><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
+<link name="upper"><inertial><origin xyz="0.25 0 0"/><mass value="2"/>
+  <inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
   <geometry><cylinder length="0.5" radius="0.04"/></geometry></collision></link>
-<link name="fore"><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
+<link name="fore"><inertial><origin xyz="0.25 0 0"/><mass value="2"/>
+  <inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
   <geometry><cylinder length="0.5" radius="0.03"/></geometry></collision></link>
 <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/>
   <axis xyz="0 0 1"/></joint>
@@ -197,7 +199,14 @@ fn a_plan_has_a_tube_in_radians_and_millimetres() {
     let lab = planned();
     let reach = "reach --model arm/model.json --plan plan.csv --out reach";
     let run = lab.run(&format!("{reach} --robot arm.urdf")).exits(0);
-    for part in ["plan: 600 samples, 5.990 s", "shoulder ", "elbow ", " mrad ", " mm ", "reach/plan_tube.csv"] {
+    for part in [
+        "plan: 600 samples, 5.990 s",
+        "shoulder ",
+        "elbow ",
+        " mrad ",
+        " mm ",
+        "reach/plan_tube.csv",
+    ] {
         assert!(run.stdout.contains(part), "{part} is not in\n{}", run.stdout);
     }
     let answer = lab.run(&format!("{reach} --robot arm.urdf --json")).exits(0).json();
@@ -237,11 +246,19 @@ fn a_plan_stays_clear_of_what_it_does_not_reach() {
     let nearest = 1.1 - distance;
     scenario(nearest - 2e-3, "");
     let run = lab.run("verify cell.toml --out near").exits(1);
-    assert!(run.stdout.contains("overlaps `wall`") || run.stdout.contains("m from `wall`"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("overlaps `wall`") || run.stdout.contains("m from `wall`"),
+        "{}",
+        run.stdout
+    );
     assert!(lab.read("near/plan_closest.csv").starts_with("t,q1,q2,qd1,qd2\n0,"));
     scenario(nearest - 0.2, "");
     let run = lab.run("verify cell.toml --out far").exits(1);
-    assert!(run.stdout.contains("without any uncertainty no distance is proved either"), "{}", run.stdout);
+    assert!(
+        run.stdout.contains("without any uncertainty no distance is proved either"),
+        "{}",
+        run.stdout
+    );
     scenario(1.1, "[stop]\nbrakes = \"brakes.toml\"\n");
     lab.run("verify cell.toml --out cell").fails_with_last(&["cell.toml:", "[stop]", "leave"]);
 }
@@ -250,13 +267,23 @@ fn a_plan_stays_clear_of_what_it_does_not_reach() {
 fn plans_that_the_model_is_not_for_are_refused() {
     let lab = planned();
     let text = lab.read("plan.csv");
-    let fast: String = text.lines().enumerate().map(|(at, line)| match line.split_once(',') {
-        Some((time, rest)) if at > 0 => format!("{},{rest}\n", time.parse::<f64>().unwrap() / 3.0),
-        _ => format!("{line}\n"),
-    }).collect();
+    let fast: String = text
+        .lines()
+        .enumerate()
+        .map(|(at, line)| match line.split_once(',') {
+            Some((time, rest)) if at > 0 => {
+                format!("{},{rest}\n", time.parse::<f64>().unwrap() / 3.0)
+            }
+            _ => format!("{line}\n"),
+        })
+        .collect();
     lab.write("fast.csv", fast);
     let reach = "reach --model arm/model.json --out reach";
-    lab.run(&format!("{reach} --plan fast.csv")).fails_with_last(&["fast.csv", "was made of commands up to", "% of its speed"]);
+    lab.run(&format!("{reach} --plan fast.csv")).fails_with_last(&[
+        "fast.csv",
+        "was made of commands up to",
+        "% of its speed",
+    ]);
     lab.run(&format!("{reach} --plan none.csv")).fails_with_last(&["none.csv"]);
     lab.write("short.csv", "time,shoulder_pos,elbow_pos\n0,0,0\n0.01,0,0\n");
     lab.run(&format!("{reach} --plan short.csv")).fails_with_last(&["short.csv", "3 at least"]);
@@ -265,7 +292,11 @@ fn plans_that_the_model_is_not_for_are_refused() {
     lab.write("other.csv", text.replace("shoulder", "wrist"));
     lab.run(&format!("{reach} --plan other.csv")).fails_with_last(&["other.csv", "shoulder"]);
     lab.write("other.urdf", ARM.replace("\"shoulder\"", "\"wrist\""));
-    lab.run(&format!("{reach} --plan plan.csv --robot other.urdf")).fails_with_last(&["other.urdf", "wrist", "--robot"]);
+    lab.run(&format!("{reach} --plan plan.csv --robot other.urdf")).fails_with_last(&[
+        "other.urdf",
+        "wrist",
+        "--robot",
+    ]);
     lab.write("cell.toml", "model = \"arm/model.json\"\nplan = \"plan.csv\"\n[[obstacle]]\nname = \"b\"\nsphere = { centre = [3, 0, 0], radius = 1 }\n");
     lab.run("verify cell.toml --out cell").fails_with_last(&["cell.toml", "no `robot`"]);
     lab.edit("cell.toml", |lines| lines[1] = "data = \"logs\"".into());
@@ -291,7 +322,8 @@ fn links_are_padded_for_a_planner_and_for_the_shield() {
     assert!(slow < number(&file, "fore") && slow > 1e-3, "{answer}");
     assert!(slow <= answer["links"][1]["at_the_same_time"].as_f64().unwrap(), "{answer}");
     lab.run(&export.replace(" --robot arm.urdf", "")).fails_with_last(&["--robot"]);
-    lab.run(&format!("{export} --speed 2")).fails_with_last(&["up to 1"]);
+    let run = lab.run(&format!("{export} --speed 2")).exits(2);
+    assert!(run.stderr.contains("above 0 and up to 1"), "{}", run.stderr);
     let shield = "export --model arm/model.json --to sara-shield --robot arm.urdf --data plan.csv \
                   --capsules arm.urdf --out shield";
     let run = lab.run(shield).exits(0);

@@ -113,6 +113,9 @@ pub enum ExportError {
         /// The joint that moves the link.
         joint: String,
     },
+    /// The capsules of a robot's links cannot be read.
+    #[error(transparent)]
+    Verify(#[from] reachtube_verify::Error),
     /// A URDF cannot be read or written.
     #[error(transparent)]
     Robot(#[from] reachtube_robot::RobotError),
@@ -141,7 +144,7 @@ pub enum ExportError {
 }
 
 reachtube_files::kinds!(ExportError {
-    [Conform | Robot] => inner,
+    [Conform | Robot | Verify] => inner,
     SeparateGravity | NotPhysical | Unreadable => Robot,
     EndsEarly | NoTime | NotUniform => Recordings,
     _ => Setting,

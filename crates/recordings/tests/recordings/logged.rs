@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use reachtube_recordings::{
-    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, csv_files, group_files, read_logged,
+    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, csv_files, group_files,
+    read_logged,
 };
 use tempfile::TempDir;
 

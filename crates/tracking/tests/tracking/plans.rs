@@ -73,11 +73,11 @@ fn the_true_arm_stays_in_the_tube_of_its_plan() {
             let (k, within) = (index / 10, (index % 10) as f64 / 10.0);
             let time = plan.times[k] + 0.01 * within;
             let stamped = time + random.within(-1e-3, 1e-3);
-            for joint in 0..2 {
+            for (joint, lag) in LAGS.iter().enumerate() {
                 let position = |t: f64| waves.position(joint, part * t);
                 let speed = (position(time + 1e-4) - position(time - 1e-4)) / 2e-4;
                 let friction = if joint == 0 { FRICTION * (speed / 0.02).tanh() } else { 0.0 };
-                let y = position(stamped - LAGS[joint]) - friction + random.within(-5e-5, 5e-5);
+                let y = position(stamped - lag) - friction + random.within(-5e-5, 5e-5);
                 let [low, high] = between(&tube, &plan, (k, within), joint);
                 leaves |= y < low || y > high;
             }
@@ -115,10 +115,13 @@ fn a_plan_that_is_too_fast_is_refused_with_the_speed_at_which_it_is_not() {
     let model = model();
     let fast = plan(102, 3.0);
     let text = model.tube(&fast).unwrap_err().to_string();
-    for part in ["plans/102.csv", " rad/s", "the model was made of commands up to", "send the plan at "] {
+    for part in
+        ["plans/102.csv", " rad/s", "the model was made of commands up to", "send the plan at "]
+    {
         assert!(text.contains(part), "{part} is not in {text}");
     }
-    let percent: f64 = text.split("send the plan at ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    let percent: f64 =
+        text.split("send the plan at ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((5.0..60.0).contains(&percent), "{text}");
     assert!(model.tube(&fast.slowed(percent / 100.0)).is_ok());
     assert!(model.tube(&fast.slowed((percent + 2.0) / 100.0)).is_err());
@@ -167,7 +170,9 @@ fn deviations_bound_every_plan_at_the_same_time_and_along_the_path() {
             let [nominal, half_width] = set(&joints[joint], &run, k, joint);
             let before = waves.position(joint, part * (plan.times[k] - of.late_by));
             for y in [nominal - half_width, nominal + half_width] {
-                assert!((y - plan.command[2 * k + joint]).abs() <= of.at_the_same_time[joint] + 1e-12);
+                assert!(
+                    (y - plan.command[2 * k + joint]).abs() <= of.at_the_same_time[joint] + 1e-12
+                );
                 assert!((y - before).abs() <= of.along_the_path[joint] + 1e-12, "{number} {k}");
             }
         }

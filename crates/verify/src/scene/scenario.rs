@@ -281,7 +281,12 @@ impl Scenario {
         }
         if let Some(stop) = &self.file.stop {
             let remedy = "stops need a model of torques; leave [stop] out";
-            return Err(self.invalid(stop.span().start, "stop: ", "the model has no torques", remedy));
+            return Err(self.invalid(
+                stop.span().start,
+                "stop: ",
+                "the model has no torques",
+                remedy,
+            ));
         }
         Ok((plan, robot))
     }

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::scene::scenario::Scene;
 use crate::verdict::clearance::{Clearance, clearances};
 use crate::verdict::decide::{NextStep, PARTS, clears};
-use crate::verdict::verification::{Verification, answered};
+use crate::verdict::verification::{Answer, Verification, answered};
 use crate::verdict::witness::{Places, Witness};
 
 /// The lowest part of its speed at which a plan is tried.
@@ -48,7 +48,7 @@ pub fn verify_plan(
     let found = open.map(|pair| places.closest_in(&reach, pair));
     let closest = found.min_by(|a, b| a.distance.total_cmp(&b.distance));
     let answer = answered(closest.as_ref(), proved, scene);
-    let advice = (!proved).then(|| advice(&places, at_speed, &reach)).flatten();
+    let advice = (!proved).then(|| advice(&places, at_speed, (answer, &reach))).flatten();
     let (case, margins) = (reach.name(), body.margins(&reach));
     let (stops, lost) = (None, None);
     Ok(Verification { case, answer, clearances, margins, closest, advice, stops, lost, reach })
@@ -59,13 +59,14 @@ pub fn verify_plan(
 fn advice(
     places: &Places,
     at_speed: &dyn Fn(f64) -> Option<SuiteReach>,
-    reach: &SuiteReach,
+    (answer, reach): (Answer, &SuiteReach),
 ) -> Option<NextStep> {
     let Places { body, scene, .. } = *places;
     let is_clear =
         |reach: &SuiteReach, parts: u32| clears(&clearances(body, scene, reach, parts), scene);
-    let finer = PARTS.into_iter().filter(|parts| *parts > scene.refine);
-    if let Some(parts) = finer.into_iter().find(|parts| is_clear(reach, *parts)) {
+    let is_open = answer == Answer::Undecided;
+    let mut finer = PARTS.into_iter().filter(|parts| is_open && *parts > scene.refine);
+    if let Some(parts) = finer.find(|parts| is_clear(reach, *parts)) {
         return Some(NextStep::Refine(parts));
     }
     let slower = |part: f64| at_speed(part).is_some_and(|reach| is_clear(&reach, scene.refine));
@@ -92,7 +93,8 @@ impl Places<'_> {
         let width = reach.dimension;
         let n = width / 2;
         let at = (pair.step + 1).min(reach.times.len() - 1);
-        let centre = |k: usize, i: usize| reach.lower[k * width + i].midpoint(reach.upper[k * width + i]);
+        let centre =
+            |k: usize, i: usize| reach.lower[k * width + i].midpoint(reach.upper[k * width + i]);
         let q: Vec<f64> = (0..n).map(|i| centre(at, i)).collect();
         let slope = self.slope(pair, &q, reach.times[at]);
         let state = |index: usize| {

@@ -116,7 +116,10 @@ impl StopSearch<'_> {
         let nearest = |stop: &SimulatedStop| {
             let rows = stop.states.chunks_exact(2 * n).zip(&stop.times);
             let distances = rows.enumerate().map(|(at, (x, time))| {
-                (self.approach.places().distance((pair.joint, pair.index), &x[..n], from + time), at)
+                (
+                    self.approach.places().distance((pair.joint, pair.index), &x[..n], from + time),
+                    at,
+                )
             });
             distances.min_by(|a, b| a.0.total_cmp(&b.0))
         };

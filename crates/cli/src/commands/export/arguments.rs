@@ -168,7 +168,10 @@ pub(super) fn refuse_unused(args: &Arguments) -> Result<()> {
     // The joints of a URDF that is changed may be locked in the model.
     let is_robot = matches!(to, Target::Mjcf | Target::Urdf);
     let has_locks = (args.robot.is_some() && is_robot) || !args.update.is_empty();
-    if args.robot.is_some() && args.model.is_some() && !matches!(to, Target::Moveit | Target::SaraShield) {
+    if args.robot.is_some()
+        && args.model.is_some()
+        && !matches!(to, Target::Moveit | Target::SaraShield)
+    {
         return Err(Error::setting(BOTH));
     }
     let options = [
