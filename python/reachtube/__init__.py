@@ -6,7 +6,8 @@ model encloses them (`conform`), check other recordings (`check`), compute reach
 draw a page (`report`), enclose stops (`stop`), decide whether links stay clear of obstacles
 (`verify`), and watch a running robot (`monitor`). `identify` makes the robot from
 recordings, `excite` the motions for it, `abstract` models of any order, and `flowpipe` reachable
-sets of your own system. `System` is a linear system that is seen through its outputs.
+sets of your own system. `System` is a linear system that is seen through its outputs,
+`TrackingModel` a model of an arm under its controller.
 """
 
 from . import errors, fleet, io, plot
@@ -30,6 +31,7 @@ from ._robot import Robot
 from ._stop import AnnexRow, RecordedStop, StopStudy, WorstStop, stop
 from ._system import System
 from ._system_model import OutputTube, SystemCheck, SystemModel
+from ._tracking import PlanTube, TrackingCheck, TrackingModel
 from ._verify import (
     Clearance,
     Margin,
@@ -76,6 +78,7 @@ __all__ = [
     "Monitor",
     "MotionVerdict",
     "OutputTube",
+    "PlanTube",
     "Polynomial",
     "ReachableSet",
     "ReachtubeError",
@@ -91,6 +94,8 @@ __all__ = [
     "System",
     "SystemCheck",
     "SystemModel",
+    "TrackingCheck",
+    "TrackingModel",
     "Verification",
     "Witness",
     "WitnessStop",

@@ -21,6 +21,7 @@ __all__ = [
     "check_model",
     "check_runs",
     "check_system",
+    "check_tracking",
     "conform",
     "conform_system",
     "cut",
@@ -28,12 +29,16 @@ __all__ = [
     "flowpipe",
     "given_system",
     "identify",
+    "make_tracking",
     "model",
     "model_findings",
     "model_report",
     "model_schema",
     "open_system",
+    "paddings",
     "parse_system",
+    "parse_tracking",
+    "plan_tube",
     "prepare",
     "prepared",
     "reach",
@@ -41,6 +46,7 @@ __all__ = [
     "read_log",
     "report",
     "stop",
+    "tolerances",
     "verify",
     "version",
 ]
@@ -321,9 +327,21 @@ _Recorded: TypeAlias = tuple[str, _Array, _Array, _Array, list[float] | None]
 def check_system(description: str) -> None: ...
 def conform_system(description: str, recorded: Sequence[_Recorded]) -> tuple[str, str]: ...
 def open_system(path: str) -> str: ...
-def given_system(description: str) -> str: ...
-def parse_system(text: str, origin: str) -> str: ...
+def given_system(description: str) -> tuple[str, str]: ...
+def parse_system(text: str, origin: str) -> tuple[str, str]: ...
 def check_runs(model: str, recorded: Sequence[_Recorded]) -> str: ...
 def reach_runs(
     model: str, recorded: Sequence[_Recorded]
 ) -> list[tuple[_Array, _Array, _Array]]: ...
+def make_tracking(
+    joints: Sequence[tuple[str, str]], followed: Sequence[tuple[str, _Array, _Array, _Array]]
+) -> tuple[str, str]: ...
+def parse_tracking(text: str, origin: str) -> tuple[str, str]: ...
+def check_tracking(
+    model: str,
+    joints: Sequence[tuple[str, str]],
+    followed: Sequence[tuple[str, _Array, _Array, _Array]],
+) -> str: ...
+def plan_tube(model: str, times: _Array, command: _Array) -> tuple[_Array, _Array]: ...
+def tolerances(model: str) -> list[tuple[str, float, float]]: ...
+def paddings(model: str, urdf: str, part: float) -> list[tuple[str, float, float]]: ...

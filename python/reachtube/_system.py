@@ -206,7 +206,7 @@ class System:
         -------
         OutputTube
         """
-        model = SystemModel._of(_reachtube.given_system(self._description))
+        model = SystemModel._of(*_reachtube.given_system(self._description))
         names = [name_of(signal) for key in ("inputs", "outputs") for signal in self.to_dict()[key]]
         times = numbers("t", t)
         run = {name: np.zeros(len(times)) for name in names}

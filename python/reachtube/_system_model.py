@@ -2,91 +2,31 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from os import PathLike, fspath
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from . import _reachtube
 from ._arrays import Array, frozen, numbers
-from ._files import read_text, write_new
-from ._findings import Finding
 from ._record import Record
+from ._sealed import SealedModel
 from ._values import Values
 from .errors import SettingError
 
 
-class SystemModel(Record):
+class SystemModel(SealedModel):
     """A system with the smallest sets for which its reachable outputs hold recordings."""
 
     __slots__ = ()
-
-    @property
-    def _model(self) -> dict[str, Any]:
-        model: dict[str, Any] = json.loads(self._content["model"])
-        return model
-
-    @classmethod
-    def _of(cls, text: str, said: str = "{}") -> SystemModel:
-        """Return the model of a file's text, with findings and summary, if any."""
-        return cls(json.dumps({"model": text, **json.loads(said)}))
-
-    @property
-    def verified(self) -> bool:
-        """Whether every recorded output was proved to lie in the reachable set."""
-        return bool(self._model["verified"])
-
-    @property
-    def useful(self) -> bool:
-        """Whether it is verified, and narrower than outputs that are held or go on."""
-        without = self._model.get("without_model")
-        return self.verified and (without is None or without["narrower"] > 1.0)
+    _command: ClassVar[str] = "conform"
+    _parse = staticmethod(_reachtube.parse_system)
 
     @property
     def sets(self) -> dict[str, Any]:
         """X0, W and V, each with ``centre``, ``generators`` and ``scale``."""
         return dict(self._model["sets"])
-
-    @property
-    def findings(self) -> list[Finding]:
-        """What spoke against the model when it was made; a file has none of it."""
-        return [Finding._of(dict(finding)) for finding in self._content.get("findings", [])]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the model's file as a new dictionary."""
-        return self._model
-
-    def save(self, path: str | PathLike[str], *, force: bool = False) -> None:
-        """Write the model's file, whole or not at all.
-
-        Parameters
-        ----------
-        path
-            The file, in JSON.
-        force
-            Whether a file that exists is replaced.
-        """
-        write_new(Path(path), self._content["model"], force=force)
-
-    @classmethod
-    def load(cls, path: str | PathLike[str]) -> SystemModel:
-        """Read a file that `save` or ``reachtube conform --system --out`` wrote.
-
-        Parameters
-        ----------
-        path
-            The file.
-
-        Returns
-        -------
-        SystemModel
-        """
-        text = read_text(path, "conform")
-        return cls._of(_reachtube.parse_system(text, fspath(path)))
 
     def check(self, runs: Sequence[Any]) -> SystemCheck:
         """Compare other recordings with the model.
@@ -102,7 +42,7 @@ class SystemModel(Record):
             It is true if every output was proved to lie in the reachable set.
         """
         recorded = recorded_runs(self._model["system"], runs)
-        return SystemCheck(_reachtube.check_runs(self._content["model"], recorded))
+        return SystemCheck(_reachtube.check_runs(self._file, recorded))
 
     def reach(self, runs: Sequence[Any]) -> list[OutputTube]:
         """Compute the reachable outputs along recordings.
@@ -119,24 +59,12 @@ class SystemModel(Record):
         system = self._model["system"]
         recorded = recorded_runs(system, runs)
         names = tuple(map(name_of, system["outputs"]))
-        tubes = _reachtube.reach_runs(self._content["model"], recorded)
+        tubes = _reachtube.reach_runs(self._file, recorded)
         # A motion that starts from its past has fewer samples.
         return [
             OutputTube(names, frozen(times[len(times) - len(low) :]), *map(frozen, (at, low, high)))
             for (_, times, *_), (at, low, high) in zip(recorded, tubes, strict=True)
         ]
-
-    def __bool__(self) -> bool:
-        return self.useful
-
-    def __str__(self) -> str:
-        return str(self._content.get("summary", repr(self)))
-
-    def __repr__(self) -> str:
-        word = "conformant" if self.verified else "NOT PROVED conformant"
-        if self.verified and not self.useful:
-            word += ", but vacuous"
-        return f"<SystemModel {word}: {len(self._model['recordings'])} recordings>"
 
 
 class SystemCheck(Record):

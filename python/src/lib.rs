@@ -22,6 +22,7 @@ mod recordings;
 mod robot;
 mod safety;
 mod systems;
+mod tracking;
 mod watched;
 
 use pyo3::prelude::*;
@@ -62,6 +63,10 @@ mod _reachtube {
     use crate::systems::{
         check_runs, check_system, conform_system, given_system, open_system, parse_system,
         reach_runs,
+    };
+    #[pymodule_export]
+    use crate::tracking::{
+        check_tracking, make_tracking, paddings, parse_tracking, plan_tube, tolerances,
     };
     #[pymodule_export]
     use crate::version;

@@ -57,22 +57,29 @@ pub(crate) fn conform_system(
     let said = serde_json::json!({
         "findings": made.findings,
         "summary": made.summary().to_string(),
+        "useful": made.is_useful(),
     });
     Ok((made.model.to_json(), said.to_string()))
 }
 
-/// Makes the model of a system whose sets are all given.
-#[pyfunction]
-pub(crate) fn given_system(py: Python<'_>, description: &str) -> PyResult<String> {
-    let made = described(description).and_then(|system| Ok(SystemModel::given(&system)?.to_json()));
-    made.map_err(|failure| failure.raised(py))
+/// Returns a model's file, and whether it is useful, as JSON.
+fn sealed(model: &SystemModel) -> (String, String) {
+    (model.to_json(), serde_json::json!({ "useful": model.is_useful() }).to_string())
 }
 
-/// Reads the text of a model's file; errors name it `origin`.
+/// Makes the model of a system whose sets are all given.
 #[pyfunction]
-pub(crate) fn parse_system(py: Python<'_>, text: &str, origin: &str) -> PyResult<String> {
+pub(crate) fn given_system(py: Python<'_>, description: &str) -> PyResult<(String, String)> {
+    let made = described(description).and_then(|system| Ok(SystemModel::given(&system)?));
+    made.map(|model| sealed(&model)).map_err(|failure| failure.raised(py))
+}
+
+/// Reads the text of a model's file; errors name it `origin`. Returns the file, and whether it is
+/// useful, as JSON.
+#[pyfunction]
+pub(crate) fn parse_system(py: Python<'_>, text: &str, origin: &str) -> PyResult<(String, String)> {
     let model = SystemModel::parse(text, origin.as_ref());
-    model.map(|of| of.to_json()).map_err(|error| Failure::from(error).raised(py))
+    model.map(|of| sealed(&of)).map_err(|error| Failure::from(error).raised(py))
 }
 
 /// Compares recordings with the model of a system; returns JSON.

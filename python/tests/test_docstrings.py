@@ -22,7 +22,7 @@ ENTRY = re.compile(r"^(\S.*)$", re.MULTILINE)
 #: Classes that functions return, and that users do not make.
 RETURNED = {
     "Abstraction", "BuiltModel", "Check", "Identification", "Model", "Monitor", "Report", "Robot",
-    "StopStudy", "SystemCheck", "SystemModel", "Verification",
+    "StopStudy", "SystemCheck", "SystemModel", "TrackingCheck", "TrackingModel", "Verification",
 }
 
 

@@ -13,6 +13,7 @@ use crate::code::Code;
 use crate::error::{Error, Result};
 use crate::family::{FAMILIES, FittedFamily, TrackedRows};
 use crate::fit::TrackedSet;
+use crate::links::Links;
 use crate::model::{JointTracking, NeedsOfMotions, RunOfModel, TrackingModel};
 use crate::motion::{MotionRows, motions};
 use crate::recording::{FEWEST_SAMPLES, TrackedRun, check};
@@ -59,13 +60,14 @@ impl MadeModel {
 /// The nominal error of each joint and the least radius that holds all samples are found together
 /// by a linear program. The family of nominal errors, and one factor for all sets, come from
 /// motions that are left out in turn; from 20 recordings on, from every second one, which nothing
-/// else has seen. At last every sample is proved to lie in the sets, with directed rounding.
+/// else has seen. At last every sample is proved to lie in the sets, with directed rounding. With
+/// links, the model says too how far they stray in the recorded poses.
 ///
 /// # Errors
 ///
 /// Recordings of different joints, actual positions that are no measurement, recordings without a
 /// motion, and a program that cannot be solved.
-pub fn make(recordings: &[TrackedRun]) -> Result<MadeModel> {
+pub fn make(recordings: &[TrackedRun], links: Option<&Links>) -> Result<MadeModel> {
     check(recordings)?;
     recordings.iter().try_for_each(TrackedRun::refuse_copy)?;
     let (mut ranges, found): (Vec<_>, Vec<_>) =
@@ -94,6 +96,7 @@ pub fn make(recordings: &[TrackedRun]) -> Result<MadeModel> {
         tool: String::new(),
         verified: false,
         joints: joints(&used, chosen),
+        links: vec![],
         factor: chosen.factor,
         step: used.iter().map(TrackedRun::usual_step).fold(0.0, f64::max),
         left_out: left_out(&motions, &rows, chosen, rows.inside(chosen)?),
@@ -102,6 +105,8 @@ pub fn make(recordings: &[TrackedRun]) -> Result<MadeModel> {
         sha256: String::new(),
     };
     hold_all(&mut model, &used);
+    let strays = |links: &Links| links.strays(&model, &used, (&motions, &rows.is_kept));
+    model.links = links.map(strays).unwrap_or_default();
     let model = model.sealed();
     findings.extend(used.iter().filter_map(slips));
     findings.extend(against(&model));

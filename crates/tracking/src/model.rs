@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::basis::{TERMS, enclosed_direction};
+use crate::links::LinkTracking;
 use crate::recording::TrackedRun;
 
 /// What the field `format` of every file says.
@@ -35,6 +36,9 @@ pub struct TrackingModel {
     pub verified: bool,
     /// The joints.
     pub joints: Vec<JointTracking>,
+    /// The links, if the robot was known that has the joints.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<LinkTracking>,
     /// The factor of the sets: the largest by which the smallest sets of other motions had to grow
     /// for a motion, over all joints.
     pub factor: f64,

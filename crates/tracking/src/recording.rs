@@ -1,10 +1,12 @@
 use std::ops::{Add, Div, Mul, Sub};
 use std::path::{Path, PathBuf};
 
+use reachtube_files::hex;
 use reachtube_logs::LogFiles;
 use reachtube_recordings::{
     Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, read_logged,
 };
+use sha2::{Digest, Sha256};
 
 use crate::basis::rates;
 use crate::error::{Error, Result};
@@ -140,6 +142,20 @@ pub(crate) fn check(recordings: &[TrackedRun]) -> Result<()> {
 }
 
 impl TrackedRun {
+    /// Returns a recording of numbers: times K in s, commanded and actual positions K x n.
+    #[must_use]
+    pub fn of_numbers(
+        name: &str,
+        (joints, units): (Vec<String>, Vec<&'static str>),
+        [times, command, actual]: [Vec<f64>; 3],
+    ) -> Self {
+        let mut digest = Sha256::new();
+        let numbers = times.iter().chain(&command).chain(&actual);
+        numbers.for_each(|number| digest.update(number.to_le_bytes()));
+        let sha256 = hex(&digest.finalize());
+        Self { file: name.into(), joints, units, times, command, actual, sha256 }
+    }
+
     /// Returns the number of joints n.
     #[must_use]
     pub fn joint_count(&self) -> usize {

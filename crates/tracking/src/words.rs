@@ -12,8 +12,8 @@ use crate::model::{JointTracking, TrackingModel};
 const MOST_MOTIONS: usize = 8;
 
 /// What a model is about.
-const HOLDS: &str = "at samples, for commands as fast as the recorded ones, and payload, tool, \
-                     contact, gains and temperature as recorded";
+const HOLDS: &str = "at samples, up to recorded speeds; payload, tool, contact, gains, temperature \
+                     as recorded";
 
 impl MadeModel {
     /// Returns the verdict as one sentence.
@@ -61,6 +61,9 @@ impl MadeModel {
         let TriedFamily { depends_on, grows, .. } = &self.families[self.chosen];
         let grows = if *grows { "; the sets grow with the speed" } else { "" };
         summary.fact("nominal error", format!("{depends_on}{grows}"));
+        if let Some(links) = model.links_words() {
+            summary.fact("links", links);
+        }
         summary.fact("new motions", model.next_motion());
         summary.fact("holds", HOLDS);
         summary
@@ -85,6 +88,16 @@ impl TrackingModel {
             ),
             None => format!("in turn; {needed} of the others"),
         }
+    }
+
+    /// Returns how far links stray, in words.
+    fn links_words(&self) -> Option<String> {
+        let furthest = self.links.iter().max_by(|a, b| a.radius.total_cmp(&b.radius))?;
+        Some(format!(
+            "within {} of their nominal places in recorded poses; largest error + 20 %: {}",
+            width_up(furthest.radius, "m"),
+            milli(1.2 * furthest.largest_error, "m"),
+        ))
     }
 
     /// Returns what follows for the next motion, in words.

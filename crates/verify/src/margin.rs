@@ -107,6 +107,33 @@ impl Body {
 }
 
 impl Body {
+    /// Returns the joints whose links have capsules, in their order.
+    #[must_use]
+    pub fn links(&self) -> Vec<String> {
+        self.moved().map(|joint| self.joint_name(joint).into()).collect()
+    }
+
+    fn moved(&self) -> impl Iterator<Item = usize> {
+        let has_capsule = |joint: &usize| self.capsules().iter().any(|of| of.joint == *joint);
+        (0..self.joint_count()).filter(has_capsule)
+    }
+
+    /// Bounds how far the axes of the capsules of each of the [`links`](Self::links) move, m, while
+    /// the joints shift by a vector in `shift`, from any positions in `from` (rad; m).
+    ///
+    /// # Guarantee
+    ///
+    /// Upper bounds, directed rounding.
+    #[must_use]
+    pub fn ways_of_links(&self, from: &[Interval], shift: &[Interval]) -> Vec<f64> {
+        let ways = self.ways(&mut Workspace::default(), from, shift);
+        let of_link = |joint: usize| {
+            let own = self.capsules().iter().zip(&ways).filter(|(of, _)| of.joint == joint);
+            own.map(|(_, way)| *way).fold(0.0, f64::max)
+        };
+        self.moved().map(of_link).collect()
+    }
+
     /// Bounds how far any point of each capsule moves while the joints shift by up to `shift` (rad;
     /// m), from any positions in `ranges`, m. The order is that of the capsules.
     ///

@@ -8,8 +8,11 @@ use reachtube::finding::Table;
 use reachtube::pipeline::{body_of, followed, robot_of};
 use reachtube::recordings::ColumnSettings;
 use reachtube::robot::{Lock, Robot};
+use reachtube::scalar::Interval;
 use reachtube::scalar::rounding::sub_up;
-use reachtube::tracking::{JointTracking, MadeModel, Plan, Reading, TrackingModel, make, width_up};
+use reachtube::tracking::{
+    JointTracking, Links, MadeModel, Plan, Reading, TrackingModel, make, width_up,
+};
 use reachtube::verify::{Body, Margin};
 use reachtube::write;
 use reachtube_files::SealedFile;
@@ -60,12 +63,20 @@ pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
     let path = args.out.join("model.json");
     output::claim(&path)?;
     let robot = args.robot.map(|name| Robot::load_to_identify(name, args.lock)).transpose()?;
-    let axes = robot.map(|(robot, _)| axes(&robot));
+    let axes = robot.as_ref().map(|(robot, _)| axes(robot));
+    let body = robot.as_ref().zip(args.robot).map(|((robot, _), name)| body_of(robot, name, None));
+    // A robot without shapes has no links to speak of.
+    let body = body.and_then(Result::ok);
+    let ways = |from: &[Interval], shift: &[Interval]| {
+        body.as_ref().map_or(vec![], |body| body.ways_of_links(from, shift))
+    };
+    let joints = body.as_ref().map_or(vec![], Body::links);
+    let links = Links { joints, ways: &ways };
     let reading = Reading { axes: axes.as_deref(), columns: &args.columns, until: None };
     let (recordings, notes) = reading.read(args.data)?;
     output::notes(&notes);
     let bar = Progress::of("making a model");
-    let mut made = make(&recordings)?;
+    let mut made = make(&recordings, Some(&links))?;
     made.model = made.model.with_columns(args.columns.clone());
     drop(bar);
     write::atomically(&path, |out| out.write_all(made.model.to_json().as_bytes()))?;

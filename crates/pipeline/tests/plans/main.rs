@@ -45,6 +45,7 @@ fn model() -> TrackingModel {
         tool: String::new(),
         verified: true,
         joints: Robot::lwa4p().joints().iter().enumerate().map(joint).collect(),
+        links: vec![],
         factor: 1.2,
         step: 0.01,
         left_out: NeedsOfMotions { motions: 9, calibrated: None, furthest: None, inside: None },

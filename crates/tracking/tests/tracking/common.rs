@@ -33,7 +33,7 @@ pub(crate) fn with_log(name: &str, log: &Log) -> Vec<TrackedRun> {
 }
 
 pub(crate) fn made(recordings: &[TrackedRun]) -> MadeModel {
-    make(recordings).unwrap()
+    make(recordings, None).unwrap()
 }
 
 /// Returns the texts of the findings of a code.

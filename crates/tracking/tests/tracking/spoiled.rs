@@ -27,7 +27,7 @@ fn copied_commands_are_refused() {
         let mut copy = log(6);
         let earlier = |k: usize| copy.command[k.saturating_sub(before)];
         copy.actual = (0..copy.times.len()).map(earlier).collect();
-        let refused = make(&with_log("copy", &copy)).unwrap_err().to_string();
+        let refused = make(&with_log("copy", &copy), None).unwrap_err().to_string();
         assert!(refused.contains("logs/copy.csv: "), "{refused}");
         assert!(refused.contains(&format!("of {words} before, exactly")), "{refused}");
         assert!(refused.contains("no measurement"), "{refused}");
@@ -35,7 +35,7 @@ fn copied_commands_are_refused() {
     // A measurement of a joint that follows exactly is near a copy, but none.
     let mut noisy = log(6);
     noisy.actual = noisy.command.iter().map(|of| of.map(|position| position + 1e-6)).collect();
-    assert!(make(&with_log("noisy", &noisy)).is_ok());
+    assert!(make(&with_log("noisy", &noisy), None).is_ok());
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn a_late_clock_does_not_slip() {
 fn logs_without_a_motion_are_refused() {
     let mut still = log(1);
     still.command.fill([0.1, 0.2]);
-    let said = make(&[recording("still", &still)]).unwrap_err().to_string();
+    let said = make(&[recording("still", &still)], None).unwrap_err().to_string();
     assert!(said.contains("no commanded position changes"), "{said}");
     let spoiled: [TrackedRun; 0] = [];
     assert_eq!(servo(0), spoiled);
