@@ -19,6 +19,7 @@ mod progress;
 mod reference;
 mod report_files;
 mod schema;
+mod set_files;
 mod understood;
 mod usage;
 mod virtual_robot_arguments;

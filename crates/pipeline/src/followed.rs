@@ -14,10 +14,10 @@ use reachtube_verify::{Body, Capsules};
 use crate::code::Code;
 use crate::error::{Error, Result};
 
-/// What is said where a model is used that is no better than none.
-pub const NOT_USEFUL: &str = "The model is not proved, or its sets are no narrower than the largest \
-                              error + 20 %, or they describe its recordings only; see what `model` \
-                              said of it.";
+/// The warning where a model is used that is no better than none.
+pub const NOT_USEFUL: &str = "The model is not proved, or its sets are no narrower than the \
+                              largest error + 20 %, or they describe its recordings only; \
+                              `reachtube model` names the reason.";
 
 /// Returns the reachable set of an arm that follows a plan under its controller. Its nominal motion
 /// is the plan, so that distances from the nominal motion are distances from the plan.

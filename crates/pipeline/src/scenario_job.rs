@@ -1,9 +1,10 @@
 //! The question of a scenario, as every front end asks it.
 
 use reachtube_arm::{ArmModel, OfArm, beyond_proof_of_stops};
-use reachtube_conform::{Keep, Model, Opened, Progress, Setup};
+use reachtube_conform::{CheckJob, Keep, Model, Opened, Progress, Setup};
 use reachtube_files::SealedFile;
 use reachtube_finding::{Finding, Report};
+use reachtube_recordings::RunSource;
 use reachtube_robot::Robot;
 use reachtube_tracking::{Plan, TrackingModel};
 use reachtube_verify::{
@@ -22,14 +23,14 @@ use crate::prepared::check_job;
 #[derive(Debug)]
 pub struct ScenarioJob {
     scenario: Scenario,
-    motions: Motions,
+    motions: Moving,
     body: Body,
     scene: Scene,
 }
 
 /// What moves the links.
 #[derive(Debug)]
-enum Motions {
+enum Moving {
     /// A model of torques, over recordings.
     Recorded(Box<(Model, Setup)>),
     /// A model of the arm under its controller, over plans.
@@ -66,15 +67,24 @@ impl ScenarioJob {
             let robot = robot_of(&model, name)?;
             let body = body_of(&robot, name, scenario.capsules.as_deref())?;
             let scene = scenario.scene(&robot)?;
-            let motions = Motions::Planned(Box::new((model, robot)));
+            let motions = Moving::Planned(Box::new((model, robot)));
             return Ok(Self { scenario, motions, body, scene });
         }
         let (model, setup) = reachtube_arm::open(&scenario.model)?;
         scenario.recordings()?;
+        Self::with_model(scenario, model, setup)
+    }
+
+    /// Reads what a scenario names, but for the recordings, with a model of torques in memory.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn with_model(scenario: Scenario, model: Model, setup: Setup) -> Result<Self> {
         let robot = Robot::from_description(&model.robot())?;
         let scene = scenario.scene(&robot)?;
         let body = Body::new(&robot, &Capsules::open(scenario.capsules.as_deref(), &robot)?);
-        let motions = Motions::Recorded(Box::new((model, setup)));
+        let motions = Moving::Recorded(Box::new((model, setup)));
         Ok(Self { scenario, motions, body, scene })
     }
 
@@ -86,23 +96,53 @@ impl ScenarioJob {
     ///
     /// # Errors
     ///
-    /// As [`check_job`], [`CheckJob::open`](reachtube_conform::CheckJob::open), [`verify`],
+    /// As [`check_job`], [`CheckJob::open`], [`verify`],
     /// [`Plan::read`] and [`followed`].
     pub fn run(self, progress: &dyn Progress) -> Result<Verified> {
         let Self { scenario, motions, body, scene } = self;
         match motions {
-            Motions::Planned(of) => planned(&of.0, &of.1, &scenario, (body, scene)),
-            Motions::Recorded(of) => {
+            Moving::Planned(of) => planned(&of.0, &of.1, &scenario, (body, scene)),
+            Moving::Recorded(of) => {
                 let (model, setup) = *of;
                 let job = check_job(model, setup, scenario.recordings()?)?;
-                let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
-                recorded(job.open(progress)?, &scenario, (body, scene))
+                recorded(job, &scenario, (body, scene), progress)
+            }
+        }
+    }
+
+    /// Decides as [`run`](Self::run) does over recordings that were opened, or prepared, already.
+    ///
+    /// # Guarantee
+    ///
+    /// As [`verify`].
+    ///
+    /// # Errors
+    ///
+    /// As [`CheckJob::open`] and [`verify`].
+    pub fn run_over(
+        self,
+        source: impl RunSource + 'static,
+        progress: &dyn Progress,
+    ) -> Result<Verified> {
+        let Self { scenario, motions, body, scene } = self;
+        match motions {
+            Moving::Planned(of) => planned(&of.0, &of.1, &scenario, (body, scene)),
+            Moving::Recorded(of) => {
+                let job = CheckJob::new(of.0, of.1, source);
+                recorded(job, &scenario, (body, scene), progress)
             }
         }
     }
 }
 
-fn recorded(opened: Opened, scenario: &Scenario, (body, scene): (Body, Scene)) -> Result<Verified> {
+fn recorded(
+    job: CheckJob,
+    scenario: &Scenario,
+    (body, scene): (Body, Scene),
+    progress: &dyn Progress,
+) -> Result<Verified> {
+    let job = job.suites(&scenario.suites).until(scenario.until).keep(Keep::Needed);
+    let opened = job.open(progress)?;
     let Opened { model, problem, tube } = &opened;
     let input_set = |rates: &[f64]| problem.input_set_at(&tube.sets, rates);
     let rule = scenario.stop(problem.robot(), &input_set)?;

@@ -3,15 +3,13 @@
 use rayon::prelude::*;
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::mul_up;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-use crate::model::TrackingModel;
+use crate::model::{LinkTracking, TrackingModel};
 use crate::motion::MotionRows;
 use crate::recording::TrackedRun;
 
 /// The links of an arm, for which models say how far they stray.
-pub struct Links<'a> {
+pub struct TrackedLinks<'a> {
     /// The joints that move them.
     pub joints: Vec<String>,
     /// Their ways.
@@ -21,23 +19,7 @@ pub struct Links<'a> {
 /// Bounds how far each link moves, m, from some positions of the joints if these shift.
 pub type Ways<'a> = dyn Fn(&[Interval], &[Interval]) -> Vec<f64> + Sync + 'a;
 
-/// How far a link strays in the recorded poses.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct LinkTracking {
-    /// The joint that moves the link.
-    pub joint: String,
-    /// How far the axis of the link stays from where the nominal positions have it, with the
-    /// factor, m.
-    pub radius: f64,
-    /// The factor: the largest by which the largest distance of the other motions had to grow for a
-    /// motion.
-    pub factor: f64,
-    /// The largest recorded distance from where the command has it, m.
-    pub largest_error: f64,
-}
-
-impl Links<'_> {
+impl TrackedLinks<'_> {
     /// Returns how far each link strays. Motions that are kept are for the factor alone; without
     /// any, each is left out in turn.
     ///

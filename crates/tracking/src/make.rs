@@ -13,7 +13,7 @@ use crate::code::Code;
 use crate::error::{Error, Result};
 use crate::family::{FAMILIES, FittedFamily, TrackedRows};
 use crate::fit::TrackedSet;
-use crate::links::Links;
+use crate::links::TrackedLinks;
 use crate::model::{JointTracking, NeedsOfMotions, RunOfModel, TrackingModel};
 use crate::motion::{MotionRows, motions};
 use crate::recording::{FEWEST_SAMPLES, TrackedRun, check};
@@ -67,7 +67,7 @@ impl MadeModel {
 ///
 /// Recordings of different joints, actual positions that are no measurement, recordings without a
 /// motion, and a program that cannot be solved.
-pub fn make(recordings: &[TrackedRun], links: Option<&Links>) -> Result<MadeModel> {
+pub fn make(recordings: &[TrackedRun], links: Option<&TrackedLinks>) -> Result<MadeModel> {
     check(recordings)?;
     recordings.iter().try_for_each(TrackedRun::refuse_copy)?;
     let (mut ranges, found): (Vec<_>, Vec<_>) =
@@ -105,7 +105,7 @@ pub fn make(recordings: &[TrackedRun], links: Option<&Links>) -> Result<MadeMode
         sha256: String::new(),
     };
     hold_all(&mut model, &used);
-    let strays = |links: &Links| links.strays(&model, &used, (&motions, &rows.is_kept));
+    let strays = |links: &TrackedLinks| links.strays(&model, &used, (&motions, &rows.is_kept));
     model.links = links.map(strays).unwrap_or_default();
     let model = model.sealed();
     findings.extend(used.iter().filter_map(slips));

@@ -8,7 +8,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::basis::{TERMS, enclosed_direction};
-use crate::links::LinkTracking;
 use crate::recording::TrackedRun;
 
 /// What the field `format` of every file says.
@@ -84,6 +83,22 @@ pub struct JointTracking {
     /// The largest recorded change of y minus the nominal position from one sample to the next,
     /// rad.
     pub largest_change: f64,
+}
+
+/// How far a link strays in the recorded poses.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LinkTracking {
+    /// The joint that moves the link.
+    pub joint: String,
+    /// How far the axis of the link stays from where the nominal positions have it, with the
+    /// factor, m.
+    pub radius: f64,
+    /// The factor: the largest by which the largest distance of the other motions had to grow for a
+    /// motion.
+    pub factor: f64,
+    /// The largest recorded distance from where the command has it, m.
+    pub largest_error: f64,
 }
 
 /// How the motions were used that the factor comes from.

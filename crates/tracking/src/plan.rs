@@ -1,6 +1,6 @@
 //! Plans: commands that are not sent yet.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use reachtube_logs::LogFiles;
 use reachtube_recordings::Wanted;
@@ -9,25 +9,10 @@ use reachtube_scalar::Interval;
 use crate::basis::rates;
 use crate::error::{Error, Result};
 use crate::model::{JointTracking, TrackingModel};
-use crate::recording::{FEWEST_SAMPLES, Reading};
+use crate::recording::{FEWEST_SAMPLES, Plan, Reading};
 
 /// Beyond the recorded speed by no more than this part, a command counts as one like the recorded.
 pub(crate) const AS_FAST: f64 = 1e-9;
-
-/// Samples of the commanded positions of n joints.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
-    /// The file.
-    pub file: PathBuf,
-    /// The names of the joints.
-    pub joints: Vec<String>,
-    /// The units of their positions: rad, or m.
-    pub units: Vec<&'static str>,
-    /// Times since the first sample, K, s, strictly increasing.
-    pub times: Vec<f64>,
-    /// Commanded positions, row-major K x n, rad.
-    pub command: Vec<f64>,
-}
 
 impl Plan {
     /// Reads the plans at a path, a CSV file or a folder of them, for the joints of a model.
@@ -116,7 +101,7 @@ impl TrackingModel {
     /// Returns where the joints can be while the arm follows a plan: at each sample of it, and
     /// between two samples by bounds of the velocities.
     ///
-    /// At a sample the bounds are those of the sets. Between samples the command moves with the
+    /// At a sample the bounds are the ends of the sets. Between samples the command moves with the
     /// speeds of both, and the error changes by as much as it ever did in the recordings from one
     /// sample to the next; over a step of the plan that is k times as long as theirs, k times as
     /// much.

@@ -10,7 +10,6 @@ use sha2::{Digest, Sha256};
 
 use crate::basis::rates;
 use crate::error::{Error, Result};
-use crate::plan::Plan;
 
 /// Fewest samples of a recording, which has an acceleration.
 pub(crate) const FEWEST_SAMPLES: usize = 3;
@@ -32,6 +31,21 @@ pub struct TrackedRun {
     pub actual: Vec<f64>,
     /// SHA-256 of the files.
     pub sha256: String,
+}
+
+/// Samples of the commanded positions of n joints.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// The file.
+    pub file: PathBuf,
+    /// The names of the joints.
+    pub joints: Vec<String>,
+    /// The units of their positions: rad, or m.
+    pub units: Vec<&'static str>,
+    /// Times since the first sample, K, s, strictly increasing.
+    pub times: Vec<f64>,
+    /// Commanded positions, row-major K x n, rad.
+    pub command: Vec<f64>,
 }
 
 /// How logs are read.

@@ -32,7 +32,7 @@ impl JointTracking {
 
 /// How far each joint can be from a plan, up to a part of the recorded speeds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Deviations {
+pub struct PlanDeviations {
     /// The part of the recorded speeds.
     pub part: f64,
     /// From the position that is planned for the same time, rad.
@@ -56,14 +56,14 @@ impl TrackingModel {
     ///
     /// Outer, directed rounding, for plans whose accelerations are bounded so at every time.
     #[must_use]
-    pub fn deviations(&self, part: f64) -> Deviations {
+    pub fn deviations(&self, part: f64) -> PlanDeviations {
         let of = |late: f64| -> Vec<f64> {
             self.joints.iter().map(|joint| joint.deviation(part, late, self.step)).collect()
         };
         let sum = |late: &f64| of(*late).iter().sum::<f64>();
         let lags = self.joints.iter().map(|joint| -joint.speed).filter(|lag| *lag > 0.0);
         let late_by = lags.chain([0.0]).min_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap_or(0.0);
-        Deviations { part, at_the_same_time: of(0.0), along_the_path: of(late_by), late_by }
+        PlanDeviations { part, at_the_same_time: of(0.0), along_the_path: of(late_by), late_by }
     }
 }
 

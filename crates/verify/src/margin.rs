@@ -135,7 +135,7 @@ impl Body {
     }
 
     /// Bounds how far any point of each capsule moves while the joints shift by up to `shift` (rad;
-    /// m), from any positions in `ranges`, m. The order is that of the capsules.
+    /// m), from any positions in `ranges`, m, capsule by capsule.
     ///
     /// # Guarantee
     ///

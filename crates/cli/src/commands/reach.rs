@@ -1,6 +1,6 @@
 //! `reachtube reach`: a model's reachable sets along recorded suites.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::ArgPredicate;
 use clap::{Arg, Args};
@@ -19,12 +19,12 @@ use serde::Serialize;
 use crate::commands::{system, tracking};
 use crate::data_arguments::ModelArguments;
 use crate::error::{Error, Result};
-use crate::file_names;
 use crate::opened::OpenedCheck;
 use crate::option_values::seconds;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::report_files;
+use crate::set_files::Written;
 use reachtube::number::{at_least, four_decimals};
 
 const HELP: &str = "\
@@ -118,13 +118,6 @@ struct RestOutput<'a> {
     time: f64,
     /// Whether U covers every dry friction that is possible there.
     covered: bool,
-}
-
-/// The reachable set of a suite or run, and the files that hold it.
-pub(super) struct Written<'a> {
-    pub reach: &'a SuiteReach,
-    pub samples: PathBuf,
-    pub tube: PathBuf,
 }
 
 /// Returns an argument that a system stands in for, with a dash in its place.
@@ -231,28 +224,7 @@ fn rests_text(model: &Model, rests: &[Stiction]) -> String {
     )
 }
 
-impl<'a> Written<'a> {
-    /// Returns the files of some sets in a folder.
-    pub(super) fn all(reach: &'a [SuiteReach], out: &Path) -> Vec<Self> {
-        let file = |(reach, name): (&'a SuiteReach, String)| Self {
-            reach,
-            samples: out.join(format!("{name}.csv")),
-            tube: out.join(format!("{name}_tube.csv")),
-        };
-        reach.iter().zip(file_names::of_reach(reach)).map(file).collect()
-    }
-
-    /// Returns the names of the two CSV files with their contents.
-    pub(super) fn contents(&self) -> [(String, Vec<u8>); 2] {
-        let name =
-            |path: &Path| path.file_name().expect("it was joined").to_string_lossy().into_owned();
-        let (mut samples, mut tube) = (Vec::new(), Vec::new());
-        let in_memory = "memory takes all that is written";
-        self.reach.write_samples(&mut samples).expect(in_memory);
-        self.reach.write_tube(&mut tube).expect(in_memory);
-        [(name(&self.samples), samples), (name(&self.tube), tube)]
-    }
-
+impl Written<'_> {
     /// Returns the widths of the set at the last sample, 2n, in rad and rad/s.
     fn final_width(&self) -> Vec<f64> {
         let SuiteReach { lower, upper, dimension, .. } = self.reach;

@@ -11,7 +11,7 @@ use reachtube::robot::{Lock, Robot};
 use reachtube::scalar::Interval;
 use reachtube::scalar::rounding::sub_up;
 use reachtube::tracking::{
-    JointTracking, Links, MadeModel, Plan, Reading, TrackingModel, make, width_up,
+    JointTracking, MadeModel, Plan, Reading, TrackedLinks, TrackingModel, make, width_up,
 };
 use reachtube::verify::{Body, Margin};
 use reachtube::write;
@@ -19,12 +19,12 @@ use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::commands::reach::Written;
 use crate::data_arguments::ModelArguments;
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::progress::Progress;
+use crate::set_files::Written;
 
 /// Options of `check` do not fit the model.
 pub(crate) const NO_TORQUES: &str = "the model is of an arm under its controller, without \
@@ -71,7 +71,7 @@ pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
         body.as_ref().map_or(vec![], |body| body.ways_of_links(from, shift))
     };
     let joints = body.as_ref().map_or(vec![], Body::links);
-    let links = Links { joints, ways: &ways };
+    let links = TrackedLinks { joints, ways: &ways };
     let reading = Reading { axes: axes.as_deref(), columns: &args.columns, until: None };
     let (recordings, notes) = reading.read(args.data)?;
     output::notes(&notes);

@@ -172,10 +172,12 @@ fn a_changed_model_is_refused() {
 /// An arm of two links of 0.5 m that turns in a plane, as a URDF with collision shapes.
 const ARM: &str = r#"<robot name="two"><link name="base"/>
 <link name="upper"><inertial><origin xyz="0.25 0 0"/><mass value="2"/>
-  <inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
+  <inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
   <geometry><cylinder length="0.5" radius="0.04"/></geometry></collision></link>
 <link name="fore"><inertial><origin xyz="0.25 0 0"/><mass value="2"/>
-  <inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial><collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
+  <inertia ixx="0.01" iyy="0.05" izz="0.05" ixy="0" ixz="0" iyz="0"/></inertial>
+  <collision><origin xyz="0.25 0 0" rpy="0 1.5707963 0"/>
   <geometry><cylinder length="0.5" radius="0.03"/></geometry></collision></link>
 <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/>
   <axis xyz="0 0 1"/></joint>
@@ -297,7 +299,8 @@ fn plans_that_the_model_is_not_for_are_refused() {
         "wrist",
         "--robot",
     ]);
-    lab.write("cell.toml", "model = \"arm/model.json\"\nplan = \"plan.csv\"\n[[obstacle]]\nname = \"b\"\nsphere = { centre = [3, 0, 0], radius = 1 }\n");
+    let ball = "[[obstacle]]\nname = \"b\"\nsphere = { centre = [3, 0, 0], radius = 1 }\n";
+    lab.write("cell.toml", format!("model = \"arm/model.json\"\nplan = \"plan.csv\"\n{ball}"));
     lab.run("verify cell.toml --out cell").fails_with_last(&["cell.toml", "no `robot`"]);
     lab.edit("cell.toml", |lines| lines[1] = "data = \"logs\"".into());
     lab.run("verify cell.toml --out cell").fails_with_last(&["cell.toml", "no `plan`"]);

@@ -210,7 +210,7 @@ fn links_stay_within_their_margins_of_the_plan() {
     assert!(largest[5][0] > 0.8 && largest[5][1] > 0.2, "{largest:?}");
 }
 
-/// A plan that meets an obstacle only with its lag is safe at a lower speed, which is said.
+/// A plan that may meet an obstacle at its speed is safe at a lower one, which is named.
 #[test]
 fn the_speed_is_named_at_which_a_plan_is_safe() {
     let (model, (robot, body)) = (model(), arm());

@@ -6,7 +6,7 @@ use std::path::Path;
 use reachtube_files::MARK;
 use reachtube_robot::{JointKind, Robot, Urdf, UrdfOptions};
 use reachtube_scalar::Interval;
-use reachtube_tracking::{Deviations, TrackingModel};
+use reachtube_tracking::{PlanDeviations, TrackingModel};
 use reachtube_verify::{Body, Capsules};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -24,7 +24,7 @@ pub struct Paddings {
     /// The links with collision shapes, in the order of the joints that move them.
     pub links: Vec<LinkPadding>,
     /// How far the joints can be from a plan.
-    pub deviations: Deviations,
+    pub deviations: PlanDeviations,
     /// The file that MoveIt reads.
     pub file: ExportFile,
 }
@@ -107,7 +107,7 @@ fn ranges(robot: &Robot) -> Vec<Interval> {
     robot.joints().iter().map(range).collect()
 }
 
-fn text(links: &[LinkPadding], deviations: &Deviations) -> String {
+fn text(links: &[LinkPadding], deviations: &PlanDeviations) -> String {
     let largest = links.iter().map(|of| of.along_the_path).fold(0.0, f64::max);
     let percent = 100.0 * deviations.part;
     let mut text = format!(

@@ -2,5 +2,6 @@
 
 pub(crate) mod direction;
 pub(crate) mod obstacle;
+mod obstacle_table;
 pub(crate) mod scenario;
 pub(crate) mod separation;

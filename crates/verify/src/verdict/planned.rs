@@ -9,7 +9,7 @@ use crate::scene::scenario::Scene;
 use crate::verdict::clearance::{Clearance, clearances};
 use crate::verdict::decide::{NextStep, PARTS, clears};
 use crate::verdict::verification::{Answer, Verification, answered};
-use crate::verdict::witness::{Places, Witness};
+use crate::verdict::witness::{Surroundings, Witness};
 
 /// The lowest part of its speed at which a plan is tried.
 const SLOWEST: f64 = 0.125;
@@ -43,12 +43,12 @@ pub fn verify_plan(
     let mut clearances = clearances(body, scene, &reach, scene.refine);
     clearances.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let proved = clears(&clearances, scene);
-    let places = Places { robot, body, scene };
+    let around = Surroundings { robot, body, scene };
     let open = clearances.iter().filter(|pair| pair.distance <= scene.clearance);
-    let found = open.map(|pair| places.closest_in(&reach, pair));
+    let found = open.map(|pair| around.closest_in(&reach, pair));
     let closest = found.min_by(|a, b| a.distance.total_cmp(&b.distance));
     let answer = answered(closest.as_ref(), proved, scene);
-    let advice = (!proved).then(|| advice(&places, at_speed, (answer, &reach))).flatten();
+    let advice = (!proved).then(|| advice(&around, at_speed, (answer, &reach))).flatten();
     let (case, margins) = (reach.name(), body.margins(&reach));
     let (stops, lost) = (None, None);
     Ok(Verification { case, answer, clearances, margins, closest, advice, stops, lost, reach })
@@ -57,11 +57,11 @@ pub fn verify_plan(
 /// Finds what would decide, or what would make a plan safe: shorter parts of steps, or a lower
 /// speed.
 fn advice(
-    places: &Places,
+    around: &Surroundings,
     at_speed: &dyn Fn(f64) -> Option<SuiteReach>,
     (answer, reach): (Answer, &SuiteReach),
 ) -> Option<NextStep> {
-    let Places { body, scene, .. } = *places;
+    let Surroundings { body, scene, .. } = *around;
     let is_clear =
         |reach: &SuiteReach, parts: u32| clears(&clearances(body, scene, reach, parts), scene);
     let is_open = answer == Answer::Undecided;
@@ -86,7 +86,7 @@ fn advice(
     Some(NextStep::Slower(low))
 }
 
-impl Places<'_> {
+impl Surroundings<'_> {
     /// Returns the motion in a reachable set that brings a link closest to an obstacle: at each
     /// sample in the corner that is the closest where no distance was proved.
     fn closest_in(&self, reach: &SuiteReach, pair: &Clearance) -> Witness {

@@ -97,7 +97,8 @@ impl StopSearch<'_> {
             scene.obstacles.iter().enumerate().any(|(index, obstacle)| {
                 let mut concerned = joints.iter().filter(|joint| obstacle.concerns(**joint));
                 concerned.any(|joint| {
-                    self.approach.places().distance((*joint, index), &x[..n], *time) <= distance
+                    self.approach.surroundings().distance((*joint, index), &x[..n], *time)
+                        <= distance
                 })
             })
         })
@@ -110,14 +111,18 @@ impl StopSearch<'_> {
         let (n, k) = (case.parts(), before.sample);
         let from = case.grid.times()[k];
         let state = &before.motion.states[k * 2 * n..(k + 1) * 2 * n];
-        let towards = self.approach.places().slope(pair, &state[..n], from);
+        let towards = self.approach.surroundings().slope(pair, &state[..n], from);
         let cases = self.extremes(state, from, &towards)?;
         let robot = problem.robot();
         let nearest = |stop: &SimulatedStop| {
             let rows = stop.states.chunks_exact(2 * n).zip(&stop.times);
             let distances = rows.enumerate().map(|(at, (x, time))| {
                 (
-                    self.approach.places().distance((pair.joint, pair.index), &x[..n], from + time),
+                    self.approach.surroundings().distance(
+                        (pair.joint, pair.index),
+                        &x[..n],
+                        from + time,
+                    ),
                     at,
                 )
             });
@@ -131,7 +136,7 @@ impl StopSearch<'_> {
         let stop = worst.simulate(robot, STEPS[1])?;
         let (distance, at) = nearest(&stop)?;
         let end = &stop.states[at * 2 * n..at * 2 * n + n];
-        let slope = self.approach.places().slope(pair, end, from + stop.times[at]);
+        let slope = self.approach.surroundings().slope(pair, end, from + stop.times[at]);
         // At a constant deceleration, the way grows with the speed by the time until standstill.
         let lasts = stop.time.iter().map(|time| time.min(stop.times[at]));
         let by_speed = slope.iter().zip(lasts).map(|(slope, lasts)| slope * lasts);

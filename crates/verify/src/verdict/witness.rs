@@ -96,7 +96,8 @@ impl Approach<'_> {
         for _ in 0..ROUNDS {
             let Some(q) = motion.states.get(sample * 2 * n..sample * 2 * n + n) else { break };
             let functional =
-                [self.places().slope(pair, q, case.grid.times()[sample]), vec![0.0; n]].concat();
+                [self.surroundings().slope(pair, q, case.grid.times()[sample]), vec![0.0; n]]
+                    .concat();
             let (start, inputs) = self.vertices(&motion, sample, &functional);
             motion = Motion::new(problem.dynamics(), case, &start, &inputs);
             let found = self.nearest(pair, &motion, &start, &inputs);
@@ -155,8 +156,8 @@ impl Approach<'_> {
         let (n, times) = (self.case.parts(), self.case.grid.times());
         let distances = motion.states.chunks_exact(2 * n).zip(times);
         let at = (pair.joint, pair.index);
-        let places = self.places();
-        let distances = distances.map(|(x, t)| (places.distance(at, &x[..n], *t), *t));
+        let around = self.surroundings();
+        let distances = distances.map(|(x, t)| (around.distance(at, &x[..n], *t), *t));
         let (distance, time) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let samples = motion.states.len() / (2 * n);
         Some(Witness {
@@ -173,20 +174,20 @@ impl Approach<'_> {
     }
 
     /// Returns the links and the obstacles.
-    pub(super) fn places(&self) -> Places<'_> {
-        Places { robot: self.problem.robot(), body: self.body, scene: self.scene }
+    pub(super) fn surroundings(&self) -> Surroundings<'_> {
+        Surroundings { robot: self.problem.robot(), body: self.body, scene: self.scene }
     }
 }
 
 /// The links of a robot and the obstacles.
 #[derive(Clone, Copy)]
-pub(super) struct Places<'a> {
+pub(super) struct Surroundings<'a> {
     pub robot: &'a Robot,
     pub body: &'a Body,
     pub scene: &'a Scene,
 }
 
-impl Places<'_> {
+impl Surroundings<'_> {
     /// Returns the slope of the distance of a link from an obstacle in the joints' positions.
     pub(super) fn slope(&self, pair: &Clearance, q: &[f64], time: f64) -> Vec<f64> {
         let mut moved = q.to_vec();

@@ -20,8 +20,8 @@ use crate::output;
 const NO_MODEL: &str = "only mjcf and urdf take --robot; name a model that `model` or `conform` \
                         wrote with --model";
 
-const BOTH: &str = "--model and --robot are both given, but a model has its robot; only a model of an arm under \
-                    its controller, with --to moveit or sara-shield, needs both";
+const BOTH: &str = "--model and --robot are both given, but a model has its robot; only a model of \
+                    an arm under its controller, with --to moveit or sara-shield, needs both";
 
 const HELP: &str = "\
 Tools, and what each supports:
