@@ -1,4 +1,4 @@
-"""Model files as results: text that carries its own digest, with the findings of the call that made it."""
+"""Model files as results: text with its own digest, and the findings of the call that made it."""
 
 from __future__ import annotations
 
