@@ -103,7 +103,8 @@ class TrackingModel(SealedModel):
     @property
     def lags(self) -> dict[str, float]:
         """The time by which each joint is late, s."""
-        return {joint["name"]: -joint["speed"] for joint in self._model["joints"]}
+        model = self._model
+        return {joint["name"]: model["delay"] - joint["speed"] for joint in model["joints"]}
 
     def check(self, runs: Sequence[Any]) -> TrackingCheck:
         """Compare other recordings with the model.

@@ -73,6 +73,8 @@ impl TrackingModel {
         }
         // For each motion and joint: the furthest sample, what it needs, and how many are outside.
         let motions = motions(recordings);
+        let recordings: Vec<TrackedRun> =
+            recordings.iter().map(|of| of.delayed(self.delay)).collect();
         let of_motion = |motion: &MotionRows| {
             let of = &recordings[motion.recording];
             let joint = |joint: usize| {

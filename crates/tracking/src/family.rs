@@ -30,7 +30,7 @@ pub(crate) const FAMILIES: [Family; 8] = [
 ];
 
 /// A family is chosen over a simpler one if its sets are smaller by more than this part.
-const BETTER: f64 = 0.05;
+pub(crate) const BETTER: f64 = 0.05;
 
 /// From this number of recordings on, every second one is kept for the factor alone.
 pub(crate) const FOR_SPLIT: usize = 20;
@@ -70,13 +70,19 @@ pub(crate) struct FittedFamily {
 }
 
 impl TrackedRows {
-    pub(crate) fn new(recordings: &[TrackedRun], motions: &[MotionRows]) -> Self {
+    /// Returns the rows of recordings with their commands of a delay before; `used` are these
+    /// recordings as they are, whose speeds the model's sets are for.
+    pub(crate) fn new(
+        recordings: &[TrackedRun],
+        used: &[TrackedRun],
+        motions: &[MotionRows],
+    ) -> Self {
         let n = recordings[0].joint_count();
         let of_joint = |joint: usize| {
-            let rows =
-                || recordings.iter().flat_map(|of| (0..of.times.len()).map(move |k| (of, k)));
+            let rows = || rows_of(recordings);
             let rates: Vec<[f64; 2]> = rows().map(|(of, k)| of.rates(k, joint)).collect();
-            let largest = rates.iter().map(|[speed, _]| speed.abs()).fold(0.0, f64::max);
+            let speeds = rows_of(used).map(|(of, k)| of.rates::<f64>(k, joint)[0].abs());
+            let largest = speeds.fold(0.0, f64::max);
             let terms = |[speed, acceleration]: &[f64; 2]| {
                 [1.0, *speed, *acceleration, direction(*speed, largest)]
             };
@@ -193,4 +199,9 @@ impl TrackedRows {
         let found: Vec<bool> = found.collect::<Result<_>>()?;
         Ok(Some(found.iter().filter(|inside| **inside).count()))
     }
+}
+
+/// Returns all samples, recording by recording.
+fn rows_of(recordings: &[TrackedRun]) -> impl Iterator<Item = (&TrackedRun, usize)> {
+    recordings.iter().flat_map(|of| (0..of.times.len()).map(move |k| (of, k)))
 }

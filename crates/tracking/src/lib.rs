@@ -4,6 +4,7 @@ mod basis;
 mod check;
 mod code;
 mod defects;
+mod delay;
 mod error;
 mod family;
 mod fit;

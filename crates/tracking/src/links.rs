@@ -20,7 +20,8 @@ pub struct TrackedLinks<'a> {
 pub type Ways<'a> = dyn Fn(&[Interval], &[Interval]) -> Vec<f64> + Sync + 'a;
 
 impl TrackedLinks<'_> {
-    /// Returns how far each link strays. Motions that are kept are for the factor alone; without
+    /// Returns how far each link strays, from recordings with their commands of the model's delay
+    /// before, and as they are. Motions that are kept are for the factor alone; without
     /// any, each is left out in turn.
     ///
     /// # Guarantee
@@ -29,12 +30,12 @@ impl TrackedLinks<'_> {
     pub(crate) fn strays(
         &self,
         model: &TrackingModel,
-        recordings: &[TrackedRun],
+        (followed, recordings): (&[TrackedRun], &[TrackedRun]),
         (motions, is_kept): (&[MotionRows], &[bool]),
     ) -> Vec<LinkTracking> {
         // For each motion and link the distance from the nominal place, and from the commanded one.
         let of_motion = |motion: &MotionRows| {
-            let of = &recordings[motion.recording];
+            let of = [followed, recordings].map(|all| &all[motion.recording]);
             let mut largest = vec![[0.0f64; 2]; self.joints.len()];
             for k in motion.rows.clone() {
                 for (at, ways) in self.at_sample(model, of, k).iter().enumerate() {
@@ -71,12 +72,19 @@ impl TrackedLinks<'_> {
     }
 
     /// Bounds how far each link is at a sample from its nominal place, and from its commanded one.
-    fn at_sample(&self, model: &TrackingModel, of: &TrackedRun, k: usize) -> [Vec<f64>; 2] {
+    fn at_sample(
+        &self,
+        model: &TrackingModel,
+        [late, of]: [&TrackedRun; 2],
+        k: usize,
+    ) -> [Vec<f64>; 2] {
         let n = of.joint_count();
-        let command = |joint: usize| Interval::point(of.command[k * n + joint]);
-        let nominal =
-            |joint: usize| model.joints[joint].nominal(command(joint), of.rates(k, joint));
-        [(0..n).map(nominal).collect::<Vec<_>>(), (0..n).map(command).collect()].map(|from| {
+        let command = |of: &TrackedRun, joint: usize| Interval::point(of.command[k * n + joint]);
+        let nominal = |joint: usize| {
+            model.joints[joint].nominal(command(late, joint), late.rates(k, joint))
+        };
+        let commanded = (0..n).map(|joint| command(of, joint)).collect();
+        [(0..n).map(nominal).collect::<Vec<_>>(), commanded].map(|from| {
             let actual = &of.actual[k * n..(k + 1) * n];
             let shift: Vec<Interval> =
                 actual.iter().zip(&from).map(|(y, from)| Interval::point(*y) - *from).collect();

@@ -10,8 +10,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::code::Code;
+use crate::delay;
 use crate::error::{Error, Result};
-use crate::family::{FAMILIES, FittedFamily, TrackedRows};
+use crate::family::{BETTER, FAMILIES, FittedFamily, TrackedRows};
 use crate::fit::TrackedSet;
 use crate::links::TrackedLinks;
 use crate::model::{JointTracking, NeedsOfMotions, RunOfModel, TrackingModel};
@@ -81,8 +82,7 @@ pub fn make(recordings: &[TrackedRun], links: Option<&TrackedLinks>) -> Result<M
         return Err(Error::NoMotion);
     }
     let motions = motions(&used);
-    let rows = TrackedRows::new(&used, &motions);
-    let (tried, at) = rows.choose()?;
+    let Searched { delay, followed, rows, tried, at } = search(&used, &motions)?;
     let chosen = &tried[at];
     let recorded = recordings.iter().zip(&ranges).map(|(of, range)| RunOfModel {
         file: of.file.display().to_string(),
@@ -95,6 +95,7 @@ pub fn make(recordings: &[TrackedRun], links: Option<&TrackedLinks>) -> Result<M
         version: 0,
         tool: String::new(),
         verified: false,
+        delay,
         joints: joints(&used, chosen),
         links: vec![],
         factor: chosen.factor,
@@ -104,11 +105,13 @@ pub fn make(recordings: &[TrackedRun], links: Option<&TrackedLinks>) -> Result<M
         columns: ColumnSettings::default(),
         sha256: String::new(),
     };
-    hold_all(&mut model, &used);
-    let strays = |links: &TrackedLinks| links.strays(&model, &used, (&motions, &rows.is_kept));
+    hold_all(&mut model, &followed);
+    let strays = |links: &TrackedLinks| {
+        links.strays(&model, (&followed, &used), (&motions, &rows.is_kept))
+    };
     model.links = links.map(strays).unwrap_or_default();
     let model = model.sealed();
-    findings.extend(used.iter().filter_map(slips));
+    findings.extend(followed.iter().filter_map(slips));
     findings.extend(against(&model));
     let family = |of: &FittedFamily| TriedFamily {
         depends_on: FAMILIES[of.family].words,
@@ -117,6 +120,41 @@ pub fn make(recordings: &[TrackedRun], links: Option<&TrackedLinks>) -> Result<M
         factor: of.factor,
     };
     Ok(MadeModel { model, families: tried.iter().map(family).collect(), chosen: at, findings })
+}
+
+/// Families that were tried under the delay that was chosen.
+struct Searched {
+    delay: f64,
+    /// The recordings with their commands of so much before.
+    followed: Vec<TrackedRun>,
+    rows: TrackedRows,
+    tried: Vec<FittedFamily>,
+    /// The place of the chosen one.
+    at: usize,
+}
+
+/// Chooses a family without a delay, and with the delay that explains the most of what the sets are
+/// fitted to, if its sets are smaller.
+fn search(used: &[TrackedRun], motions: &[MotionRows]) -> Result<Searched> {
+    let with = |delay: f64| -> Result<Searched> {
+        let followed: Vec<TrackedRun> = used.iter().map(|of| of.delayed(delay)).collect();
+        let rows = TrackedRows::new(&followed, used, motions);
+        let (tried, at) = rows.choose()?;
+        Ok(Searched { delay, followed, rows, tried, at })
+    };
+    let plain = with(0.0)?;
+    let is_kept = |recording: usize| {
+        let mut of_all = motions.iter().zip(&plain.rows.is_kept);
+        of_all.any(|(motion, is_kept)| motion.recording == recording && *is_kept)
+    };
+    let fitted = used.iter().enumerate().filter(|(recording, _)| !is_kept(*recording));
+    let delay = delay::best(&fitted.map(|(_, of)| of).collect::<Vec<_>>());
+    if delay == 0.0 {
+        return Ok(plain);
+    }
+    let late = with(delay)?;
+    let size = |of: &Searched| of.tried[of.at].mean_half_width;
+    Ok(if size(&late) < (1.0 - BETTER) * size(&plain) { late } else { plain })
 }
 
 /// Returns the joints with their sets, scaled by the factor, and what the recordings show of them.

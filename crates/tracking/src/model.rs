@@ -16,7 +16,7 @@ pub(crate) const FORMAT: &str = "reachtube-tracking-model";
 /// The version of the format.
 pub(crate) const VERSION: u32 = 2;
 
-/// A model of an arm under its controller: at each sample of a command r, the actual position y of
+/// A model of an arm under its controller: at each sample of a command r of a delay before, the actual position y of
 /// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. The parabola through the
 /// sample and its neighbours has the speed ṙ and the acceleration r̈; d is the direction of the
 /// command, from -1 to 1.
@@ -33,6 +33,9 @@ pub struct TrackingModel {
     pub tool: String,
     /// Whether every sample was proved to lie in the sets, with directed rounding.
     pub verified: bool,
+    /// The delay of the command, the same for all joints, s.
+    #[serde(default)]
+    pub delay: f64,
     /// The joints.
     pub joints: Vec<JointTracking>,
     /// The links, if the robot was known that has the joints.
@@ -245,7 +248,7 @@ impl SealedFile for TrackingModel {
             let sizes = [radius, radius_per_speed, largest_speed, joint.largest_change];
             joint.factors().into_iter().chain(sizes)
         });
-        match self.joints.is_empty() || !numbers.chain([self.factor, self.step]).all(f64::is_finite)
+        match self.joints.is_empty() || !numbers.chain([self.factor, self.step, self.delay]).all(f64::is_finite)
         {
             true => Err("it has no joints, or numbers that are not finite".into()),
             false => Ok(()),

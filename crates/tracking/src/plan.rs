@@ -7,6 +7,7 @@ use reachtube_recordings::Wanted;
 use reachtube_scalar::Interval;
 
 use crate::basis::rates;
+use crate::delay::delayed;
 use crate::error::{Error, Result};
 use crate::model::{JointTracking, TrackingModel};
 use crate::recording::{FEWEST_SAMPLES, Plan, Reading};
@@ -116,6 +117,8 @@ impl TrackingModel {
     pub fn tube(&self, plan: &Plan) -> Result<PlanTube> {
         self.refuse_beyond(plan)?;
         let (n, samples) = (self.joints.len(), plan.times.len());
+        let command = delayed(&plan.times, &plan.command, self.delay);
+        let plan = &Plan { command, ..plan.clone() };
         let at = |index: usize| {
             let (k, joint) = (index / n, &self.joints[index % n]);
             let rates = plan.rates(k, index % n);

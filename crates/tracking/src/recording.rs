@@ -9,6 +9,7 @@ use reachtube_recordings::{
 use sha2::{Digest, Sha256};
 
 use crate::basis::rates;
+use crate::delay::delayed;
 use crate::error::{Error, Result};
 
 /// Fewest samples of a recording, which has an acceleration.
@@ -183,6 +184,11 @@ impl TrackedRun {
     {
         let n = self.joint_count();
         rates(k, &self.times, |k| T::from(self.command[k * n + joint]))
+    }
+
+    /// Returns the recording with the command of so many seconds before.
+    pub(crate) fn delayed(&self, delay: f64) -> Self {
+        Self { command: delayed(&self.times, &self.command, delay), ..self.clone() }
     }
 
     /// Returns the highest speed of the command over the joints at sample `k`, rad/s.

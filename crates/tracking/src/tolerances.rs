@@ -10,19 +10,20 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 use crate::model::{JointTracking, TrackingModel};
 
 impl JointTracking {
-    /// Returns the largest |y - r| that the model allows where a command has come to rest, with any
+    /// Returns the largest |y - r| that a model with a delay allows where a command has come to rest, with any
     /// recorded acceleration, and for any command up to the recorded speed and acceleration, rad.
     ///
     /// # Guarantee
     ///
     /// Outer, directed rounding.
     #[must_use]
-    pub fn largest_deviations(&self) -> [f64; 2] {
+    pub fn largest_deviations(&self, delay: f64) -> [f64; 2] {
         let product = |(factor, largest): (f64, f64)| mul_up(factor.abs(), largest);
         let accelerated = product((self.acceleration, self.largest_acceleration));
         let at_rest = add_up(add_up(self.offset.abs(), self.radius), accelerated);
         let terms = [
             (self.speed, self.largest_speed),
+            (delay, self.largest_speed),
             (self.radius_per_speed, self.largest_speed),
             (self.direction, 1.0),
         ];
@@ -58,27 +59,28 @@ impl TrackingModel {
     #[must_use]
     pub fn deviations(&self, part: f64) -> PlanDeviations {
         let of = |late: f64| -> Vec<f64> {
-            self.joints.iter().map(|joint| joint.deviation(part, late, self.step)).collect()
+            let after_delay = Interval::point(late) - self.delay;
+            self.joints.iter().map(|joint| joint.deviation(part, after_delay, self.step)).collect()
         };
         let sum = |late: &f64| of(*late).iter().sum::<f64>();
-        let lags = self.joints.iter().map(|joint| -joint.speed).filter(|lag| *lag > 0.0);
-        let late_by = lags.chain([0.0]).min_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap_or(0.0);
+        let lags = self.joints.iter().map(|joint| self.delay - joint.speed);
+        let lags = lags.chain([self.delay, 0.0]).filter(|lag| *lag >= 0.0);
+        let late_by = lags.min_by(|a, b| sum(a).total_cmp(&sum(b))).unwrap_or(0.0);
         PlanDeviations { part, at_the_same_time: of(0.0), along_the_path: of(late_by), late_by }
     }
 }
 
 impl JointTracking {
-    /// Bounds |y(t) - r(t - late)| for commands up to a part of the recorded speed. The speed of
+    /// Bounds |y(t) - r(t - delay - late)| for commands up to a part of the recorded speed. The speed of
     /// the parabola through three samples differs from the command's by what it can change within
     /// half a step.
-    fn deviation(&self, part: f64, late: f64, step: f64) -> f64 {
+    fn deviation(&self, part: f64, late: Interval, step: f64) -> f64 {
         let point = Interval::point;
         let speed = point(part) * self.largest_speed;
         let acceleration = point(part).sqr() * self.largest_acceleration;
-        let late = point(late);
         let by_speed = (late + self.speed).abs() + point(self.radius_per_speed);
         let by_acceleration =
-            point(self.acceleration.abs()) + late.sqr() * 0.5 + late * point(step) * 0.5;
+            point(self.acceleration.abs()) + late.sqr() * 0.5 + late.abs() * point(step) * 0.5;
         let fixed = point(self.offset.abs()) + self.direction.abs() + self.radius;
         (fixed + by_speed * speed + by_acceleration * acceleration).hi()
     }
@@ -105,7 +107,7 @@ impl TrackingModel {
              two digits.\nconstraints:\n"
         );
         for joint in &self.joints {
-            let [at_rest, along] = joint.largest_deviations();
+            let [at_rest, along] = joint.largest_deviations(self.delay);
             let _ = writeln!(text, "  {}:", joint.name);
             let speed = two_digits_up(joint.largest_speed);
             let [along, goal] = [along, at_rest].map(two_digits_up);

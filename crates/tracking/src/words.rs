@@ -60,7 +60,11 @@ impl MadeModel {
         summary.fact("left out", model.left_out_words());
         let TriedFamily { depends_on, grows, .. } = &self.families[self.chosen];
         let grows = if *grows { "; the sets grow with the speed" } else { "" };
-        summary.fact("nominal error", format!("{depends_on}{grows}"));
+        let after = match model.delay {
+            0.0 => String::new(),
+            delay => format!(", after a delay of {}", milli(delay, "s")),
+        };
+        summary.fact("nominal error", format!("{depends_on}{after}{grows}"));
         if let Some(links) = model.links_words() {
             summary.fact("links", links);
         }
@@ -121,7 +125,8 @@ impl TrackingModel {
 /// Returns the table of the joints.
 fn table(model: &TrackingModel) -> Table {
     let row = |joint: &JointTracking| {
-        let late = if joint.speed == 0.0 { "-".into() } else { milli(-joint.speed, "s") };
+        let lag = model.delay - joint.speed;
+        let late = if lag == 0.0 { "-".into() } else { milli(lag, "s") };
         vec![
             joint.name.clone(),
             late,

@@ -44,6 +44,7 @@ fn model() -> TrackingModel {
         version: 0,
         tool: String::new(),
         verified: true,
+        delay: 0.0,
         joints: Robot::lwa4p().joints().iter().enumerate().map(joint).collect(),
         links: vec![],
         factor: 1.2,

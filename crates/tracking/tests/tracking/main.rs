@@ -2,6 +2,7 @@
 
 mod cautions;
 mod common;
+mod delays;
 mod plans;
 mod real_logs;
 mod second_way;
