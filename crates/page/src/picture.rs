@@ -76,6 +76,16 @@ impl Scale {
             take([*a, *b, *c], *radius);
             take([*d, *e, *f], *radius);
         }
+        // An obstacle that is far away must not make the arm a speck.
+        let size = (0..3).map(|i| high[i] - low[i]).fold(0.1, f64::max);
+        let near = core::array::from_fn::<_, 3, _>(|i| (low[i] - size, high[i] + size));
+        let mut take = |p: [f64; 3], radius: f64| {
+            for i in 0..3 {
+                let inside = |x: f64| x.max(near[i].0).min(near[i].1);
+                low[i] = low[i].min(inside(p[i] - radius));
+                high[i] = high[i].max(inside(p[i] + radius));
+            }
+        };
         for obstacle in &scene.obstacles {
             match *obstacle.solid {
                 Solid::HalfSpace { normal, offset } => {
