@@ -22,7 +22,7 @@ use crate::commands::excite::ExciteOutput;
 use crate::commands::export::{
     ModelExport, PaddingsExport, RobotExport, ShieldExport, TolerancesExport,
 };
-use crate::commands::monitor::Event;
+use crate::commands::monitor::{Event, TrackingEvent};
 use crate::commands::prepare::PrepareOutput;
 use crate::commands::reach::ReachOutput;
 use crate::commands::report::ReportOutput;
@@ -83,6 +83,7 @@ fn results() -> Value {
             ("model", ModelOutput::json_schema),
             ("model_tracking", TrackingOutput::json_schema),
             ("monitor", Event::json_schema),
+            ("monitor_tracking", TrackingEvent::json_schema),
             ("prepare", PrepareOutput::json_schema),
             ("reach", ReachOutput::json_schema),
             ("reach_plan", PlansOutput::json_schema),

@@ -39,10 +39,15 @@ pub(crate) fn delayed(times: &[f64], command: &[f64], delay: f64) -> Vec<f64> {
         let part = ((at - times[before]) / (times[before + 1] - times[before])).clamp(0.0, 1.0);
         late.extend((0..n).map(|joint| {
             let [here, next] = [before, before + 1].map(|k| command[k * n + joint]);
-            if part == 0.0 { here } else { here + part * (next - here) }
+            between(here, next, part)
         }));
     }
     late
+}
+
+/// Returns the command at a part of the way from one sample to the next.
+pub(crate) fn between(here: f64, next: f64, part: f64) -> f64 {
+    if part == 0.0 { here } else { here + part * (next - here) }
 }
 
 /// Returns the delay after which an offset, a lag and the acceleration explain the most, by least

@@ -151,9 +151,15 @@ impl JointTracking {
     pub(crate) fn beside(&self, recording: &TrackedRun, k: usize, joint: usize) -> (Interval, f64) {
         let at = k * recording.joint_count() + joint;
         let rates = recording.rates::<Interval>(k, joint);
-        let nominal = self.nominal(Interval::point(recording.command[at]), rates);
+        self.rest([recording.command[at], recording.actual[at]], rates)
+    }
+
+    /// Returns an actual position minus the nominal one at a commanded one, and the half-width of
+    /// the set there, as [`beside`](Self::beside) does.
+    pub(crate) fn rest(&self, [command, actual]: [f64; 2], rates: [Interval; 2]) -> (Interval, f64) {
+        let nominal = self.nominal(Interval::point(command), rates);
         let growth = mul_down(self.radius_per_speed, rates[0].mig());
-        (Interval::point(recording.actual[at]) - nominal, add_down(self.radius, growth))
+        (Interval::point(actual) - nominal, add_down(self.radius, growth))
     }
 
     /// Encloses the nominal position at a commanded one, with its speed and acceleration.

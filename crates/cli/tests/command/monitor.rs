@@ -19,7 +19,12 @@ fn lab() -> Lab {
 
 /// Runs the monitor on a text.
 fn monitor(lab: &Lab, more: &str, input: &str) -> Run {
-    let mut command = lab.command(&format!("{MONITOR} {more}"));
+    fed(lab, &format!("{MONITOR} {more}"), input)
+}
+
+/// Runs a command on a text.
+pub(crate) fn fed(lab: &Lab, command: &str, input: &str) -> Run {
+    let mut command = lab.command(command);
     let mut child = piped(&mut command).spawn().unwrap();
     // A command that ends early does not read all of it.
     let _ = child.stdin.take().unwrap().write_all(input.as_bytes());

@@ -1,6 +1,7 @@
 //! Models of an arm under its controller, from logs of commanded and actual positions.
 
 use crate::fixture::{Lab, Run};
+use crate::monitor::fed;
 use crate::output_schema::fits;
 use crate::servo::log;
 
@@ -331,4 +332,43 @@ fn links_are_padded_for_a_planner_and_for_the_shield() {
                   --capsules arm.urdf --out shield";
     let run = lab.run(shield).exits(0);
     assert!(run.stdout.contains("secure_radius 0.0"), "{}", run.stdout);
+}
+
+#[test]
+fn samples_of_a_running_arm_are_judged_as_they_come() {
+    let lab = planned();
+    let monitor = "monitor --model arm/model.json";
+    let log = log(2);
+    let row = |k: usize, far: f64| {
+        let ([a, b], [c, d]) = (log.command[k], log.actual[k]);
+        format!("{},{a},{b},{c},{}\n", log.times[k], d + far)
+    };
+    let text = |far: &dyn Fn(usize) -> f64| {
+        let rows: String = (0..600).map(|k| row(k, far(k))).collect();
+        format!("t,r1,r2,q1,q2\n{rows}")
+    };
+    let run = fed(&lab, monitor, &text(&|_| 0.0)).exits(0);
+    assert!(run.stdout.starts_with("inside: 0 of 600 samples"), "{}", run.stdout);
+    let push = |k: usize| if (300..310).contains(&k) { 0.05 } else { 0.0 };
+    let run = fed(&lab, monitor, &text(&push)).exits(1);
+    assert!(run.stdout.starts_with("3.0000 s: elbow leaves its set: it needs "), "{}", run.stdout);
+    assert!(run.stdout.contains("NOT inside: 10 of 600 samples"), "{}", run.stdout);
+    let run = fed(&lab, &format!("{monitor} --json"), &text(&push)).exits(1);
+    let events: Vec<serde_json::Value> =
+        run.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    events.iter().for_each(|event| fits("monitor_tracking", event));
+    assert_eq!((&events[0]["event"], &events[0]["joint"]), (&"left".into(), &"elbow".into()));
+    assert_eq!(events.last().unwrap()["outside"], 10);
+    // One JSON object per line, three times as fast as the logs, with a gap.
+    let fast = |k: usize| {
+        let ([a, b], [c, d]) = (log.command[3 * k], log.actual[3 * k]);
+        format!("{{\"t\":{},\"r\":[{a},{b}],\"q\":[{c},{d}]}}\n", log.times[k])
+    };
+    let lines: String = (0..100).chain(120..200).map(fast).collect();
+    let run = fed(&lab, monitor, &lines).exits(1);
+    assert!(run.stdout.contains("is faster than the recorded ones"), "{}", run.stdout);
+    assert!(run.stdout.contains("of 180 samples outside the sets; 1 gaps"), "{}", run.stdout);
+    fed(&lab, monitor, "t,r1,r2,q1\n").fails_with(&["standard input:1", "no column q2"]);
+    fed(&lab, monitor, "t,r1,r2,q1,q2\n0,0,0,0,nan\n").fails_after_result(&["standard input:2"]);
+    fed(&lab, &format!("{monitor} --step 0.1"), "").fails_with(&["--model"]);
 }

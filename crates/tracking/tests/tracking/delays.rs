@@ -9,7 +9,7 @@ use crate::servo::{Plan as Waves, Random};
 const LATE: f64 = 0.15;
 
 /// A recording at 30 Hz of joints that do what they were commanded 0.15 s before.
-fn late(number: u64) -> TrackedRun {
+pub(crate) fn late(number: u64) -> TrackedRun {
     let (waves, mut random) = (Waves::new(number), Random(number));
     let times: Vec<f64> = (0..180).map(|k| f64::from(k) / 30.0).collect();
     let command = times.iter().flat_map(|t| [0, 1].map(|joint| waves.position(joint, *t)));

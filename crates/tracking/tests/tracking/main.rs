@@ -3,6 +3,7 @@
 mod cautions;
 mod common;
 mod delays;
+mod monitored;
 mod plans;
 mod real_logs;
 mod second_way;

@@ -9,19 +9,22 @@ Examples:
   robot-driver | reachtube monitor --model model.json
   reachtube monitor --model model.json --step 0.001 --horizon 0.2 --json < run.csv
   robot-driver | reachtube monitor --model model.json --healthy recordings
+  robot-driver | reachtube monitor --model arm/model.json
+      an arm under its controller: t,r1..rn,q1..qn with commanded and actual positions
 
 Reads samples from standard input, either CSV with the header t,q1..qn,qd1..qdn,tau1..taun or one
 JSON object per line: {\"t\":0.1,\"q\":[..],\"qd\":[..],\"tau\":[..]}. Prints a line at once when
 a window of the motion leaves the reachable set, and a summary at the end or on Ctrl-C
 (docs/monitor.md).
 
-Exit codes: 0 no window left its set, 1 a window left its set or an alarm was raised, 2 error.";
+Exit codes: 0 no window or sample left its set, 1 one left its set or an alarm was raised, 2
+error.";
 
 /// Watch a running robot: report at once when its motion leaves the model's sets
 #[derive(Debug, Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Arguments {
-    /// Model file; the model must be linear
+    /// Model file, of a linear model or of an arm under its controller
     #[arg(long, value_name = "FILE")]
     pub model: PathBuf,
     /// Time between samples, s [default: the median of the first 16]

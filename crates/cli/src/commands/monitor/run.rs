@@ -1,38 +1,31 @@
-use std::io::BufRead;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-
 use reachtube::Model;
 use reachtube::conform::Error as ConformError;
 use reachtube::conform::monitor::Schedule;
 use reachtube::identify::prepare::VelocitySource;
 use reachtube::pipeline::LiveMonitor;
 use reachtube::recordings::{DataSet, SampleError};
-use reachtube_files::ErrorKind;
+use reachtube::tracking::TrackingModel;
+use reachtube_files::SealedFile;
 
 use crate::commands::monitor::arguments::Arguments;
 use crate::commands::monitor::events::Events;
-use crate::commands::monitor::samples::{Form, Sample};
-use crate::error::{Error, Result};
+use crate::commands::monitor::lines::{END_OF_INPUT, follow, wrong};
+use crate::commands::monitor::samples::{Form, Kinds, Sample};
+use crate::error::Result;
+use crate::commands::monitor::tracking;
 use crate::outcome::Outcome;
 use crate::output;
+
+/// What samples have: positions, velocities and torques.
+const KINDS: Kinds = &["q", "qd", "tau"];
 
 /// Samples from which the time between samples is taken.
 const FIRST: usize = 17;
 
-/// Lines that may wait to be judged.
-const WAITING: usize = 1024;
-
-/// How samples end that no interrupt ends.
-const END_OF_INPUT: &str = "end of input";
-
-/// What comes from outside.
-enum Message {
-    Line(std::io::Result<String>),
-    /// The user asked for the end.
-    Interrupt,
-}
-
 pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
+    if TrackingModel::is_at(&args.model) {
+        return tracking::run(args, json);
+    }
     let (model, setup) = reachtube::arm::open(&args.model)?;
     if setup.dynamics().linear_system().is_none() {
         return Err(ConformError::NotLinear.into());
@@ -46,7 +39,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         events: Events::new(model.signals.clone(), json),
         next_gauge: f64::NEG_INFINITY,
     };
-    let ended = watch.follow(&listen());
+    let ended = follow(|number, line| watch.take(number, line));
     watch.begin().or_else(|error| if ended.is_ok() { Err(error) } else { Ok(()) })?;
     let outcome = match &mut watch.monitor {
         None => Outcome::Done,
@@ -66,29 +59,6 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     ended.map(|_| outcome)
 }
 
-/// Reads lines in a thread of their own, so that an interrupt is noticed while none comes.
-fn listen() -> Receiver<Message> {
-    let (lines, messages) = sync_channel(WAITING);
-    let interrupts = lines.clone();
-    // Without a handler, an interrupt ends the command without a summary.
-    if ctrlc::set_handler(move || drop(interrupts.send(Message::Interrupt))).is_err() {
-        output::note("Ctrl-C ends the command without a summary");
-    }
-    std::thread::spawn(move || read(&lines));
-    messages
-}
-
-fn read(lines: &SyncSender<Message>) {
-    for line in std::io::stdin().lock().lines() {
-        if lines.send(Message::Line(line)).is_err() {
-            return;
-        }
-    }
-    // An empty error marks the end of the input.
-    let end = std::io::Error::from(std::io::ErrorKind::UnexpectedEof);
-    let _ = lines.send(Message::Line(Err(end)));
-}
-
 /// A monitor and what it needs before it can begin.
 struct Watch<'a> {
     args: &'a Arguments,
@@ -102,33 +72,11 @@ struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    /// Follows the samples to their end, and returns how they ended.
-    fn follow(&mut self, messages: &Receiver<Message>) -> Result<&'static str> {
-        let mut number = 0;
-        for message in messages {
-            let line = match message {
-                Message::Interrupt => return Ok("interrupt"),
-                Message::Line(Ok(line)) => line,
-                Message::Line(Err(error)) => {
-                    return match error.kind() {
-                        std::io::ErrorKind::UnexpectedEof => Ok(END_OF_INPUT),
-                        _ => Err(wrong(number + 1, &error.to_string())),
-                    };
-                }
-            };
-            number += 1;
-            if !line.trim().is_empty() {
-                self.take(number, &line)?;
-            }
-        }
-        Ok(END_OF_INPUT)
-    }
-
     fn take(&mut self, number: u64, line: &str) -> Result<()> {
         let form = match &self.form {
             Some(form) => form,
             None => {
-                let form = Form::of(line, self.model.inputs());
+                let form = Form::of(line, self.model.inputs(), KINDS);
                 let form = self.form.insert(form.map_err(|problem| wrong(number, &problem))?);
                 if matches!(form, Form::Csv(_)) {
                     return Ok(());
@@ -136,7 +84,7 @@ impl Watch<'_> {
                 form
             }
         };
-        let sample = form.sample(line).map_err(|problem| wrong(number, &problem))?;
+        let sample = form.sample(line, KINDS).map_err(|problem| wrong(number, &problem))?;
         if self.monitor.is_some() {
             return self.judge(number, &sample);
         }
@@ -202,7 +150,8 @@ impl Watch<'_> {
 
     fn judge(&mut self, number: u64, sample: &Sample) -> Result<()> {
         let Some(monitor) = &mut self.monitor else { return Ok(()) };
-        let Sample { t, q, qd, tau } = sample;
+        let Sample { t, parts } = sample;
+        let [q, qd, tau] = &parts[..] else { return Ok(()) };
         let refused = |problem: SampleError| {
             let option = matches!(problem, SampleError::Gap { .. });
             let option = if option { " (--max-gap)" } else { "" };
@@ -225,8 +174,4 @@ impl Watch<'_> {
 fn rounded(step: f64) -> f64 {
     let of_rate = step.recip().round().recip();
     if (of_rate / step - 1.0).abs() < 1e-3 { of_rate } else { (1e6 * step).round().max(1.0) / 1e6 }
-}
-
-fn wrong(line: u64, problem: &str) -> Error {
-    Error::Given(ErrorKind::Recordings, format!("standard input:{line}: {problem}"))
 }

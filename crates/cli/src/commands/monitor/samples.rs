@@ -1,14 +1,16 @@
 //! Samples as lines of CSV or JSON.
 
-use serde::Deserialize;
+use serde_json::{Map, Value};
+
+/// Kinds of numbers that samples of a model have, one of each for each joint.
+pub(super) type Kinds = &'static [&'static str];
 
 /// A sample.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Sample {
     pub t: f64,
-    pub q: Vec<f64>,
-    pub qd: Vec<f64>,
-    pub tau: Vec<f64>,
+    /// The numbers of each kind.
+    pub parts: Vec<Vec<f64>>,
 }
 
 /// Format of the lines.
@@ -16,7 +18,7 @@ pub(super) struct Sample {
 pub(super) enum Form {
     /// One JSON object per line.
     Json,
-    /// CSV: which cell each number has: t, then q, q̇ and tau of each joint.
+    /// CSV: which cell each number has: t, then those of each kind, joint by joint.
     Csv(Vec<usize>),
 }
 
@@ -26,24 +28,26 @@ impl Form {
     /// # Errors
     ///
     /// The problem and the remedy.
-    pub(super) fn of(line: &str, joints: usize) -> Result<Self, String> {
+    pub(super) fn of(line: &str, joints: usize, kinds: Kinds) -> Result<Self, String> {
         if line.trim_start().starts_with('{') {
             return Ok(Self::Json);
         }
         let names: Vec<&str> = line.split(',').map(str::trim).collect();
         let of_kind = |kind: &'static str| (1..=joints).map(move |joint| format!("{kind}{joint}"));
-        let wanted = std::iter::once("t".to_string())
-            .chain(["q", "qd", "tau"].into_iter().flat_map(of_kind));
+        let wanted = kinds.iter().flat_map(|kind| of_kind(kind));
+        let wanted = std::iter::once("t".to_string()).chain(wanted);
         let cell = |name: String| {
             names.iter().position(|known| *known == name).ok_or_else(|| {
                 format!(
-                    "the header has no column {name}; begin with a header that names t, q1.., \
-                     qd1.., tau1.. up to {joints}, or give one JSON object per line"
+                    "the header has no column {name}; begin with a header that names t, {}.. up to \
+                     {joints}, or give one JSON object per line",
+                    kinds.iter().map(|kind| format!("{kind}1")).collect::<Vec<_>>().join(".., ")
                 )
             })
         };
         let cells = wanted.map(cell).collect::<Result<_, _>>()?;
-        if let Some(more) = names.iter().find(|name| **name == format!("q{}", joints + 1)) {
+        let more = |name: &&&str| **name == format!("{}{}", kinds[0], joints + 1);
+        if let Some(more) = names.iter().find(more) {
             return Err(format!(
                 "the header has a column {more}, but the model has {joints} joints"
             ));
@@ -56,10 +60,11 @@ impl Form {
     /// # Errors
     ///
     /// The problem and the remedy.
-    pub(super) fn sample(&self, line: &str) -> Result<Sample, String> {
+    pub(super) fn sample(&self, line: &str, kinds: Kinds) -> Result<Sample, String> {
         let Self::Csv(cells) = self else {
-            return serde_json::from_str(line).map_err(|error| {
-                format!("{error}; give an object with t, q, qd and tau, all numbers finite")
+            return of_json(line, kinds).map_err(|problem| {
+                let names = kinds.join(", ");
+                format!("{problem}; give an object with t, {names}, all numbers finite")
             });
         };
         let values: Vec<&str> = line.split(',').map(str::trim).collect();
@@ -70,29 +75,47 @@ impl Form {
             text.parse::<f64>().map_err(|_| format!("\"{text}\" is not a number"))
         };
         let numbers = cells.iter().map(number).collect::<Result<Vec<f64>, _>>()?;
-        let (n, rows) = ((numbers.len() - 1) / 3, &numbers[1..]);
-        let part = |index: usize| rows[index * n..(index + 1) * n].to_vec();
-        Ok(Sample { t: numbers[0], q: part(0), qd: part(1), tau: part(2) })
+        let n = (numbers.len() - 1) / kinds.len();
+        let parts = numbers[1..].chunks_exact(n).map(<[f64]>::to_vec).collect();
+        Ok(Sample { t: numbers[0], parts })
     }
+}
+
+/// Reads a sample that is a JSON object.
+fn of_json(line: &str, kinds: Kinds) -> Result<Sample, String> {
+    let object: Map<String, Value> =
+        serde_json::from_str(line).map_err(|error| error.to_string())?;
+    let missing = |name: &str| format!("there is no {name} that fits");
+    let t = object.get("t").and_then(Value::as_f64).ok_or_else(|| missing("t"))?;
+    let part = |name: &&'static str| {
+        let numbers = object.get(*name).and_then(Value::as_array);
+        let numbers = numbers.and_then(|all| all.iter().map(Value::as_f64).collect());
+        numbers.ok_or_else(|| missing(name))
+    };
+    Ok(Sample { t, parts: kinds.iter().map(part).collect::<Result<_, _>>()? })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Form, Sample};
+    use super::{Form, Kinds, Sample};
 
     #[test]
     fn columns_are_found_by_their_names() {
-        let form = Form::of("t, tau1,q1,extra,qd1", 1).unwrap();
-        let sample = Sample { t: 0.5, q: vec![1.0], qd: vec![2.0], tau: vec![3.0] };
-        assert_eq!(form.sample("0.5,3,1,x,2"), Ok(sample.clone()));
+        let kinds: Kinds = &["q", "qd", "tau"];
+        let form = Form::of("t, tau1,q1,extra,qd1", 1, kinds).unwrap();
+        let sample = Sample { t: 0.5, parts: vec![vec![1.0], vec![2.0], vec![3.0]] };
+        assert_eq!(form.sample("0.5,3,1,x,2", kinds), Ok(sample.clone()));
         assert_eq!(
-            form.sample("0.5,3,1"),
+            form.sample("0.5,3,1", kinds),
             Err("the line has 3 cells, fewer than the header".into())
         );
-        assert_eq!(form.sample("0.5,3,x,y,2"), Err("\"x\" is not a number".into()));
-        let json = Form::of(" {\"t\"", 1).unwrap();
-        assert_eq!(json.sample("{\"t\":0.5,\"q\":[1],\"qd\":[2],\"tau\":[3]}"), Ok(sample));
-        assert!(Form::of("t,q1,qd1", 1).unwrap_err().contains("no column tau1"));
-        assert!(Form::of("t,q1,q2,qd1,tau1", 1).unwrap_err().contains("a column q2"));
+        assert_eq!(form.sample("0.5,3,x,y,2", kinds), Err("\"x\" is not a number".into()));
+        let json = Form::of(" {\"t\"", 1, kinds).unwrap();
+        let line = "{\"t\":0.5,\"q\":[1],\"qd\":[2],\"tau\":[3]}";
+        assert_eq!(json.sample(line, kinds), Ok(sample));
+        let problem = json.sample(&line.replace("[2]", "[null]"), kinds).unwrap_err();
+        assert!(problem.contains("no qd") && problem.contains("t, q, qd, tau"), "{problem}");
+        assert!(Form::of("t,q1,qd1", 1, kinds).unwrap_err().contains("no column tau1"));
+        assert!(Form::of("t,q1,q2,qd1,tau1", 1, kinds).unwrap_err().contains("a column q2"));
     }
 }
