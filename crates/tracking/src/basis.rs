@@ -50,9 +50,46 @@ pub(crate) fn enclosed_direction(speed: Interval, largest_speed: f64) -> Interva
     Interval::new(lo, hi).unwrap_or(Interval::ENTIRE)
 }
 
+/// Returns the command of a delay before \[s\], row-major K x n: straight between samples, and at
+/// rest before the first one. It is defined as it is computed, in double precision.
+pub(crate) fn delayed(times: &[f64], command: &[f64], delay: f64) -> Vec<f64> {
+    if delay == 0.0 {
+        return command.to_vec();
+    }
+    let n = command.len() / times.len();
+    let mut late = Vec::with_capacity(command.len());
+    let mut before = 0;
+    for time in times {
+        let at = (time - delay).max(times[0]);
+        while before + 2 < times.len() && times[before + 1] <= at {
+            before += 1;
+        }
+        let part = ((at - times[before]) / (times[before + 1] - times[before])).clamp(0.0, 1.0);
+        late.extend((0..n).map(|joint| {
+            let [here, next] = [before, before + 1].map(|k| command[k * n + joint]);
+            between(here, next, part)
+        }));
+    }
+    late
+}
+
+/// Returns the command at a part of the way from one sample to the next.
+pub(crate) fn between(here: f64, next: f64, part: f64) -> f64 {
+    if part == 0.0 { here } else { here + part * (next - here) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_delayed_command_is_straight_between_samples() {
+        let times = [0.0, 1.0, 2.0, 4.0];
+        let command = [0.0, 5.0, 2.0, 5.0, 4.0, 5.0, 0.0, 5.0];
+        assert_eq!(delayed(&times, &command, 0.0), command);
+        assert_eq!(delayed(&times, &command, 0.5), [0.0, 5.0, 1.0, 5.0, 3.0, 5.0, 1.0, 5.0]);
+        assert_eq!(delayed(&times, &command, 9.0), [0.0, 5.0].repeat(4));
+    }
 
     #[test]
     fn rates_are_exact_for_parabolas_on_any_grid() {

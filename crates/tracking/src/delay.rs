@@ -3,13 +3,14 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::basis::rates;
+use crate::basis::{delayed, rates};
 use crate::recording::TrackedRun;
 
 /// Longest delay that is tried, s.
 const LONGEST: f64 = 0.4;
 
-/// Each round tries so many delays on both sides of the best one, a tenth as far apart as before.
+/// Number of delays that each round tries on both sides of the best one, a tenth as far apart as
+/// before.
 const ROUND: i32 = 20;
 
 /// Rounds after the first one.
@@ -21,34 +22,6 @@ const WORTH: f64 = 0.8;
 
 /// Largest number of rows by which delays are compared.
 const ROWS: usize = 20_000;
-
-/// Returns the command of so many seconds before, row-major K x n: straight between samples, and
-/// at rest before the first one. It is defined as it is computed, in double precision.
-pub(crate) fn delayed(times: &[f64], command: &[f64], delay: f64) -> Vec<f64> {
-    if delay == 0.0 {
-        return command.to_vec();
-    }
-    let n = command.len() / times.len();
-    let mut late = Vec::with_capacity(command.len());
-    let mut before = 0;
-    for time in times {
-        let at = (time - delay).max(times[0]);
-        while before + 2 < times.len() && times[before + 1] <= at {
-            before += 1;
-        }
-        let part = ((at - times[before]) / (times[before + 1] - times[before])).clamp(0.0, 1.0);
-        late.extend((0..n).map(|joint| {
-            let [here, next] = [before, before + 1].map(|k| command[k * n + joint]);
-            between(here, next, part)
-        }));
-    }
-    late
-}
-
-/// Returns the command at a part of the way from one sample to the next.
-pub(crate) fn between(here: f64, next: f64, part: f64) -> f64 {
-    if part == 0.0 { here } else { here + part * (next - here) }
-}
 
 /// Returns the delay after which an offset, a lag and the acceleration explain the most, by least
 /// squares; 0 unless it explains much more than without a delay.
@@ -96,18 +69,4 @@ fn left(recordings: &[&TrackedRun], delay: f64, stride: usize) -> f64 {
         }
     };
     (0..n).map(of_joint).sum()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::delayed;
-
-    #[test]
-    fn a_delayed_command_is_straight_between_samples() {
-        let times = [0.0, 1.0, 2.0, 4.0];
-        let command = [0.0, 5.0, 2.0, 5.0, 4.0, 5.0, 0.0, 5.0];
-        assert_eq!(delayed(&times, &command, 0.0), command);
-        assert_eq!(delayed(&times, &command, 0.5), [0.0, 5.0, 1.0, 5.0, 3.0, 5.0, 1.0, 5.0]);
-        assert_eq!(delayed(&times, &command, 9.0), [0.0, 5.0].repeat(4));
-    }
 }

@@ -80,9 +80,8 @@ impl TrackedLinks<'_> {
     ) -> [Vec<f64>; 2] {
         let n = of.joint_count();
         let command = |of: &TrackedRun, joint: usize| Interval::point(of.command[k * n + joint]);
-        let nominal = |joint: usize| {
-            model.joints[joint].nominal(command(late, joint), late.rates(k, joint))
-        };
+        let nominal =
+            |joint: usize| model.joints[joint].nominal(command(late, joint), late.rates(k, joint));
         let commanded = (0..n).map(|joint| command(of, joint)).collect();
         [(0..n).map(nominal).collect::<Vec<_>>(), commanded].map(|from| {
             let actual = &of.actual[k * n..(k + 1) * n];

@@ -106,9 +106,8 @@ pub fn make(recordings: &[TrackedRun], links: Option<&TrackedLinks>) -> Result<M
         sha256: String::new(),
     };
     hold_all(&mut model, &followed);
-    let strays = |links: &TrackedLinks| {
-        links.strays(&model, (&followed, &used), (&motions, &rows.is_kept))
-    };
+    let strays =
+        |links: &TrackedLinks| links.strays(&model, (&followed, &used), (&motions, &rows.is_kept));
     model.links = links.map(strays).unwrap_or_default();
     let model = model.sealed();
     findings.extend(followed.iter().filter_map(slips));

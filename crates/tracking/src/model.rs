@@ -16,10 +16,10 @@ pub(crate) const FORMAT: &str = "reachtube-tracking-model";
 /// The version of the format.
 pub(crate) const VERSION: u32 = 2;
 
-/// A model of an arm under its controller: at each sample of a command r of a delay before, the actual position y of
-/// each joint satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|. The parabola through the
-/// sample and its neighbours has the speed ṙ and the acceleration r̈; d is the direction of the
-/// command, from -1 to 1.
+/// A model of an arm under its controller: at each sample, the actual position y of each joint
+/// satisfies |y - r - c - l ṙ - a r̈ - s d(ṙ)| <= ρ0 + ρ1 |ṙ|, where r is the command of a delay
+/// before. The parabola through the sample and its neighbours has the speed ṙ and the acceleration
+/// r̈; d is the direction of the command, from -1 to 1.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackingModel {
@@ -156,7 +156,11 @@ impl JointTracking {
 
     /// Returns an actual position minus the nominal one at a commanded one, and the half-width of
     /// the set there, as [`beside`](Self::beside) does.
-    pub(crate) fn rest(&self, [command, actual]: [f64; 2], rates: [Interval; 2]) -> (Interval, f64) {
+    pub(crate) fn rest(
+        &self,
+        [command, actual]: [f64; 2],
+        rates: [Interval; 2],
+    ) -> (Interval, f64) {
         let nominal = self.nominal(Interval::point(command), rates);
         let growth = mul_down(self.radius_per_speed, rates[0].mig());
         (Interval::point(actual) - nominal, add_down(self.radius, growth))
@@ -254,7 +258,8 @@ impl SealedFile for TrackingModel {
             let sizes = [radius, radius_per_speed, largest_speed, joint.largest_change];
             joint.factors().into_iter().chain(sizes)
         });
-        match self.joints.is_empty() || !numbers.chain([self.factor, self.step, self.delay]).all(f64::is_finite)
+        match self.joints.is_empty()
+            || !numbers.chain([self.factor, self.step, self.delay]).all(f64::is_finite)
         {
             true => Err("it has no joints, or numbers that are not finite".into()),
             false => Ok(()),

@@ -4,8 +4,7 @@ use std::collections::VecDeque;
 
 use reachtube_scalar::Interval;
 
-use crate::basis::rates;
-use crate::delay::between;
+use crate::basis::{between, rates};
 use crate::model::TrackingModel;
 use crate::plan::AS_FAST;
 
@@ -79,7 +78,7 @@ impl TrackingMonitor {
         &self.largest
     }
 
-    /// Takes a sample, and calls `judged` for those that can be judged with it. A time that does
+    /// Takes a sample, and calls `judged` for each sample that can be judged with it. A time that does
     /// not increase is taken for a gap.
     ///
     /// # Guarantee

@@ -6,8 +6,7 @@ use reachtube_logs::LogFiles;
 use reachtube_recordings::Wanted;
 use reachtube_scalar::Interval;
 
-use crate::basis::rates;
-use crate::delay::delayed;
+use crate::basis::{delayed, rates};
 use crate::error::{Error, Result};
 use crate::model::{JointTracking, TrackingModel};
 use crate::recording::{FEWEST_SAMPLES, Plan, Reading};

@@ -8,8 +8,7 @@ use reachtube_recordings::{
 };
 use sha2::{Digest, Sha256};
 
-use crate::basis::rates;
-use crate::delay::delayed;
+use crate::basis::{delayed, rates};
 use crate::error::{Error, Result};
 
 /// Fewest samples of a recording, which has an acceleration.
@@ -186,7 +185,7 @@ impl TrackedRun {
         rates(k, &self.times, |k| T::from(self.command[k * n + joint]))
     }
 
-    /// Returns the recording with the command of so many seconds before.
+    /// Returns the recording with the command of a delay before, s.
     pub(crate) fn delayed(&self, delay: f64) -> Self {
         Self { command: delayed(&self.times, &self.command, delay), ..self.clone() }
     }

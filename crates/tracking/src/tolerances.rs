@@ -10,8 +10,9 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 use crate::model::{JointTracking, TrackingModel};
 
 impl JointTracking {
-    /// Returns the largest |y - r| that a model with a delay allows where a command has come to rest, with any
-    /// recorded acceleration, and for any command up to the recorded speed and acceleration, rad.
+    /// Returns the largest |y - r| that a model with a delay \[s\] allows where a command has come
+    /// to rest, with any recorded acceleration, and for any command up to the recorded speed and
+    /// acceleration, rad.
     ///
     /// # Guarantee
     ///
@@ -71,9 +72,9 @@ impl TrackingModel {
 }
 
 impl JointTracking {
-    /// Bounds |y(t) - r(t - delay - late)| for commands up to a part of the recorded speed. The speed of
-    /// the parabola through three samples differs from the command's by what it can change within
-    /// half a step.
+    /// Bounds |y(t) - r(t - delay - late)| for commands up to a part of the recorded speed. The
+    /// speed of the parabola through three samples differs from the command's by what it can change
+    /// within half a step.
     fn deviation(&self, part: f64, late: Interval, step: f64) -> f64 {
         let point = Interval::point;
         let speed = point(part) * self.largest_speed;

@@ -11,8 +11,8 @@ use crate::commands::monitor::arguments::Arguments;
 use crate::commands::monitor::events::Events;
 use crate::commands::monitor::lines::{END_OF_INPUT, follow, wrong};
 use crate::commands::monitor::samples::{Form, Kinds, Sample};
-use crate::error::Result;
 use crate::commands::monitor::tracking;
+use crate::error::Result;
 use crate::outcome::Outcome;
 use crate::output;
 

@@ -18,7 +18,7 @@ pub(super) struct Sample {
 pub(super) enum Form {
     /// One JSON object per line.
     Json,
-    /// CSV: which cell each number has: t, then those of each kind, joint by joint.
+    /// CSV: which cell each number has: t, then the numbers of each kind, joint by joint.
     Csv(Vec<usize>),
 }
 

@@ -1,6 +1,7 @@
 //! `reachtube monitor` of an arm under its controller.
 
 use reachtube::finding::Table;
+use reachtube::number::counted;
 use reachtube::tracking::{Judged, TrackingModel, TrackingMonitor};
 use reachtube_files::SealedFile;
 use schemars::JsonSchema;
@@ -52,7 +53,7 @@ pub(crate) enum TrackingEvent<'a> {
 }
 
 /// What was printed of the samples so far.
-struct Watch {
+struct ArmWatch {
     json: bool,
     monitor: TrackingMonitor,
     form: Option<Form>,
@@ -71,7 +72,7 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     }
     let monitor = TrackingMonitor::new(TrackingModel::open(&args.model)?);
     let was_fast = vec![false; monitor.model().joints.len()];
-    let mut watch = Watch { json, monitor, form: None, is_outside: false, was_fast };
+    let mut watch = ArmWatch { json, monitor, form: None, is_outside: false, was_fast };
     let ended = follow(|number, line| watch.take(number, line));
     let mut last = None;
     watch.monitor.finish(|judged| last = Some(judged));
@@ -85,7 +86,7 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     ended.map(|_| Outcome::of(outside == 0))
 }
 
-impl Watch {
+impl ArmWatch {
     fn take(&mut self, number: u64, line: &str) -> Result<()> {
         let joints = self.was_fast.len();
         let form = match &self.form {
@@ -152,7 +153,7 @@ impl Watch {
         let word = if outside == 0 { "inside" } else { "NOT inside" };
         let gaps = match gaps {
             0 => String::new(),
-            gaps => format!("; {gaps} gaps, after which it began anew"),
+            gaps => format!("; {}, after which it began anew", counted(gaps, "gap")),
         };
         let row = |(joint, needed): (&str, &f64)| vec![joint.into(), format!("{needed:.2}")];
         let names = self.monitor.model().joints.iter().map(|joint| joint.name.as_str());
