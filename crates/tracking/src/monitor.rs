@@ -16,7 +16,7 @@ const GAP: f64 = 3.0;
 #[derive(Debug, Clone)]
 pub struct TrackingMonitor {
     model: TrackingModel,
-    part: Part,
+    part: Unbroken,
     /// Samples that were judged, those outside, and gaps.
     counts: [usize; 3],
     largest: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct TrackingMonitor {
 
 /// Samples without a gap between them.
 #[derive(Debug, Clone, Default)]
-struct Part {
+struct Unbroken {
     /// The time of the first one, s.
     start: f64,
     /// The number of samples.
@@ -56,7 +56,7 @@ impl TrackingMonitor {
     #[must_use]
     pub fn new(model: TrackingModel) -> Self {
         let largest = vec![0.0; model.joints.len()];
-        Self { model, part: Part::default(), counts: [0; 3], largest }
+        Self { model, part: Unbroken::default(), counts: [0; 3], largest }
     }
 
     /// Returns the model.
@@ -78,7 +78,7 @@ impl TrackingMonitor {
         &self.largest
     }
 
-    /// Takes a sample, and calls `judged` for each sample that can be judged with it. A time that does
+    /// Takes a sample, and calls `judged` for each one that can be judged with it. A time that does
     /// not increase is taken for a gap.
     ///
     /// # Guarantee
@@ -102,7 +102,7 @@ impl TrackingMonitor {
             self.finish(&mut judged);
             self.counts[2] += 1;
         }
-        let Part { start, samples, times, late, actual: positions, .. } = &mut self.part;
+        let Unbroken { start, samples, times, late, actual: positions, .. } = &mut self.part;
         if *samples == 0 {
             *start = time;
         }
@@ -126,12 +126,12 @@ impl TrackingMonitor {
         if self.part.times.len() == 3 {
             judged(self.judge(2));
         }
-        self.part = Part::default();
+        self.part = Unbroken::default();
     }
 
     /// Judges one of the last three samples.
     fn judge(&mut self, k: usize) -> Judged {
-        let Part { start, times, late, actual, .. } = &self.part;
+        let Unbroken { start, times, late, actual, .. } = &self.part;
         let n = self.model.joints.len();
         let mut found = Judged { time: start + times[k], needed: 0.0, joint: 0, too_fast: None };
         for (joint, of) in self.model.joints.iter().enumerate() {
@@ -159,7 +159,7 @@ impl TrackingMonitor {
     }
 }
 
-impl Part {
+impl Unbroken {
     /// Adds the command of a delay before the last time, as models define it.
     fn delayed(&mut self, command: &[f64], delay: f64) {
         let time = self.times.last().copied().unwrap_or_default();
