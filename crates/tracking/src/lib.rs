@@ -26,7 +26,7 @@ pub use error::{Error, Result};
 pub use links::{TrackedLinks, Ways};
 pub use make::{MadeModel, TriedFamily, make};
 pub use model::{JointTracking, LinkTracking, NeedsOfMotions, RunOfModel, TrackingModel};
-pub use monitor::{Judged, TrackingMonitor};
+pub use monitor::{JudgedSample, TrackingMonitor};
 pub use plan::PlanTube;
 pub use recording::{Plan, Reading, TrackedRun};
 pub use tolerances::PlanDeviations;

@@ -40,7 +40,7 @@ struct Unbroken {
 
 /// A sample that was judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Judged {
+pub struct JudgedSample {
     /// Its time, s.
     pub time: f64,
     /// The part of its set that the joint needs that needs the most; more than 1 is outside.
@@ -93,7 +93,7 @@ impl TrackingMonitor {
         &mut self,
         time: f64,
         [command, actual]: [&[f64]; 2],
-        mut judged: impl FnMut(Judged),
+        mut judged: impl FnMut(JudgedSample),
     ) {
         let n = self.model.joints.len();
         assert_eq!((command.len(), actual.len()), (n, n), "there is a position of each joint");
@@ -122,7 +122,7 @@ impl TrackingMonitor {
     }
 
     /// Judges the last sample before a gap or the end, and begins anew.
-    pub fn finish(&mut self, mut judged: impl FnMut(Judged)) {
+    pub fn finish(&mut self, mut judged: impl FnMut(JudgedSample)) {
         if self.part.times.len() == 3 {
             judged(self.judge(2));
         }
@@ -130,10 +130,11 @@ impl TrackingMonitor {
     }
 
     /// Judges one of the last three samples.
-    fn judge(&mut self, k: usize) -> Judged {
+    fn judge(&mut self, k: usize) -> JudgedSample {
         let Unbroken { start, times, late, actual, .. } = &self.part;
         let n = self.model.joints.len();
-        let mut found = Judged { time: start + times[k], needed: 0.0, joint: 0, too_fast: None };
+        let mut found =
+            JudgedSample { time: start + times[k], needed: 0.0, joint: 0, too_fast: None };
         for (joint, of) in self.model.joints.iter().enumerate() {
             let speeds = rates(k, times, |k| Interval::point(late[k * n + joint]));
             let at = k * n + joint;

@@ -1,12 +1,12 @@
 //! The monitor judges each sample as a check does.
 
-use reachtube_tracking::{Judged, TrackedRun, TrackingModel, TrackingMonitor};
+use reachtube_tracking::{JudgedSample, TrackedRun, TrackingModel, TrackingMonitor};
 
 use crate::common::{made, near, recording, servo};
 use crate::servo::log;
 
 /// Returns all samples that a monitor judges.
-fn judged(model: &TrackingModel, of: &TrackedRun) -> (TrackingMonitor, Vec<Judged>) {
+fn judged(model: &TrackingModel, of: &TrackedRun) -> (TrackingMonitor, Vec<JudgedSample>) {
     let mut monitor = TrackingMonitor::new(model.clone());
     let mut all = Vec::new();
     for (k, time) in of.times.iter().enumerate() {

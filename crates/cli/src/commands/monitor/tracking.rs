@@ -2,7 +2,7 @@
 
 use reachtube::finding::Table;
 use reachtube::number::counted;
-use reachtube::tracking::{Judged, TrackingModel, TrackingMonitor};
+use reachtube::tracking::{JudgedSample, TrackingModel, TrackingMonitor};
 use reachtube_files::SealedFile;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -117,8 +117,8 @@ impl ArmWatch {
     }
 
     /// Prints what is new of a sample.
-    fn print(&mut self, judged: Judged) -> Result<()> {
-        let Judged { time, needed, joint, too_fast } = judged;
+    fn print(&mut self, judged: JudgedSample) -> Result<()> {
+        let JudgedSample { time, needed, joint, too_fast } = judged;
         let name = |joint: usize| self.monitor.model().joints[joint].name.as_str();
         let is_new = needed > 1.0 && !self.is_outside;
         self.is_outside = needed > 1.0;
