@@ -369,6 +369,6 @@ fn samples_of_a_running_arm_are_judged_as_they_come() {
     assert!(run.stdout.contains("is faster than the recorded ones"), "{}", run.stdout);
     assert!(run.stdout.contains("of 180 samples outside the sets; 1 gap,"), "{}", run.stdout);
     fed(&lab, monitor, "t,r1,r2,q1\n").fails_with(&["standard input:1", "no column q2"]);
-    fed(&lab, monitor, "t,r1,r2,q1,q2\n0,0,0,0,nan\n").fails_after_result(&["standard input:2"]);
+    fed(&lab, monitor, "t,r1,r2,q1,q2\n0,0,0,0,nan\n").fails_with(&["standard input:2"]);
     fed(&lab, &format!("{monitor} --step 0.1"), "").fails_with(&["--model"]);
 }

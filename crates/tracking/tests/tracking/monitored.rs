@@ -27,7 +27,7 @@ fn samples_are_judged_as_by_a_check() {
         (made(&delayed).model, crate::delays::late(30)),
     ] {
         let mut spoiled = other.clone();
-        spoiled.actual[400] += 0.1;
+        spoiled.actual[300] += 0.1;
         for run in [other, spoiled] {
             let (monitor, all) = judged(&model, &run);
             let check = model.check(std::slice::from_ref(&run)).unwrap();

@@ -85,12 +85,13 @@ impl Form {
 fn of_json(line: &str, kinds: Kinds) -> Result<Sample, String> {
     let object: Map<String, Value> =
         serde_json::from_str(line).map_err(|error| error.to_string())?;
-    let missing = |name: &str| format!("there is no {name} that fits");
-    let t = object.get("t").and_then(Value::as_f64).ok_or_else(|| missing("t"))?;
+    let field = |name: &str| object.get(name).ok_or_else(|| format!("missing field `{name}`"));
+    let wrong = |name: &str| format!("field `{name}` has something else");
+    let t = field("t")?.as_f64().ok_or_else(|| wrong("t"))?;
     let part = |name: &&'static str| {
-        let numbers = object.get(*name).and_then(Value::as_array);
+        let numbers = field(name)?.as_array();
         let numbers = numbers.and_then(|all| all.iter().map(Value::as_f64).collect());
-        numbers.ok_or_else(|| missing(name))
+        numbers.ok_or_else(|| wrong(name))
     };
     Ok(Sample { t, parts: kinds.iter().map(part).collect::<Result<_, _>>()? })
 }
@@ -114,7 +115,7 @@ mod tests {
         let line = "{\"t\":0.5,\"q\":[1],\"qd\":[2],\"tau\":[3]}";
         assert_eq!(json.sample(line, kinds), Ok(sample));
         let problem = json.sample(&line.replace("[2]", "[null]"), kinds).unwrap_err();
-        assert!(problem.contains("no qd") && problem.contains("t, q, qd, tau"), "{problem}");
+        assert!(problem.contains("field `qd`") && problem.contains("t, q, qd, tau"), "{problem}");
         assert!(Form::of("t,q1,qd1", 1, kinds).unwrap_err().contains("no column tau1"));
         assert!(Form::of("t,q1,q2,qd1,tau1", 1, kinds).unwrap_err().contains("a column q2"));
     }

@@ -79,10 +79,10 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     last.map_or(Ok(()), |judged| watch.print(judged))?;
     let words = ended.as_ref().copied().unwrap_or("error");
     let [samples, outside, _] = watch.monitor.counts();
-    watch.summary(words)?;
-    if samples == 0 && ended.is_ok() {
-        return Err(wrong(1, "no sample was judged; give 3 at least"));
+    if samples == 0 {
+        return ended.and(Err(wrong(1, "no sample was judged; give 3 at least")));
     }
+    watch.summary(words)?;
     ended.map(|_| Outcome::of(outside == 0))
 }
 
