@@ -42,6 +42,8 @@ enum Moving {
 pub struct Verified {
     /// The model, the recordings and the reachable sets; `None` for plans.
     pub opened: Option<Opened>,
+    /// How plans were read; the recordings have notes of their own.
+    pub notes: Vec<String>,
     /// The capsules around the links.
     pub body: Body,
     /// The obstacles.
@@ -152,7 +154,7 @@ fn recorded(
         None => model.beyond_proof(problem),
     };
     warnings.extend(links_without_capsule(&body, &scene));
-    Ok(Verified { opened: Some(opened), body, scene, motions, warnings })
+    Ok(Verified { opened: Some(opened), notes: vec![], body, scene, motions, warnings })
 }
 
 fn planned(
@@ -162,7 +164,7 @@ fn planned(
     (body, scene): (Body, Scene),
 ) -> Result<Verified> {
     let (path, _) = scenario.planned()?;
-    let plans = Plan::read(path, model, scenario.until)?;
+    let (plans, notes) = Plan::read(path, model, scenario.until)?;
     let decide = |plan: &Plan| {
         let at_speed = |part: f64| followed(model, &plan.slowed(part)).ok();
         Ok(verify_plan(robot, (&body, &scene), &at_speed, followed(model, plan)?)?)
@@ -170,7 +172,7 @@ fn planned(
     let motions = plans.iter().map(decide).collect::<Result<_>>()?;
     let mut warnings = beyond_proof_of_plans(model);
     warnings.extend(links_without_capsule(&body, &scene));
-    Ok(Verified { opened: None, body, scene, motions, warnings })
+    Ok(Verified { opened: None, notes, body, scene, motions, warnings })
 }
 
 /// The answer of `verify` as JSON.

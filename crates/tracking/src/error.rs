@@ -74,10 +74,8 @@ pub enum Error {
     /// A plan is faster than what the model was made of.
     #[error(
         "{}: the command of {joint} reaches {} {unit} at {time:.3} s, but the model was made of \
-         commands up to {} {unit}; send the plan at {} % of its speed, or make the model of \
-         recordings that are as fast",
-        file.display(), significant(*value, 3), significant(*largest, 3),
-        (100.0 * part).floor()
+         commands up to {} {unit}; {}make the model of recordings that are as fast",
+        file.display(), significant(*value, 3), significant(*largest, 3), slower(*part)
     )]
     Beyond {
         /// The plan.
@@ -113,5 +111,13 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 impl From<reachtube_recordings::Error> for Error {
     fn from(error: reachtube_recordings::Error) -> Self {
         Self::Recordings(Box::new(error))
+    }
+}
+
+/// Returns the remedy of a plan that the model holds for at a part of its speed.
+fn slower(part: f64) -> String {
+    match (100.0 * part).floor() {
+        0.0 => String::new(),
+        percent => format!("send the plan at {percent} % of its speed, or "),
     }
 }

@@ -16,31 +16,38 @@ pub(crate) const AS_FAST: f64 = 1e-9;
 
 impl Plan {
     /// Reads the plans at a path, a CSV file or a folder of them, for the joints of a model.
-    /// Columns of commanded positions count before others, so that a log is a plan too.
+    /// Columns of commanded positions count before others, so that a log is a plan too. The notes
+    /// say how they were read.
     ///
     /// # Errors
     ///
     /// Defects of files, a path without a plan, and plans of fewer than 3 samples.
-    pub fn read(path: &Path, model: &TrackingModel, until: Option<f64>) -> Result<Vec<Self>> {
+    pub fn read(
+        path: &Path,
+        model: &TrackingModel,
+        until: Option<f64>,
+    ) -> Result<(Vec<Self>, Vec<String>)> {
         let axes = model.axes();
         let reading = Reading { axes: Some(&axes), columns: &model.columns, until };
         let logs = LogFiles::find(path)?;
         if logs.is_empty() {
             return Err(Error::NoLog { folder: path.into() });
         }
-        let plan = |log: LogFiles| match log {
-            LogFiles::Container(path) => Err(Error::Container { path }),
-            LogFiles::Csv(files) => {
-                let (plan, _) = reading.logged(&files, Wanted::Plan)?;
-                let (file, samples) = (plan.file.clone(), plan.times.len());
-                if samples < FEWEST_SAMPLES {
-                    Err(Error::Short { file, samples })
-                } else {
-                    Ok(plan)
-                }
+        let (mut plans, mut notes) = (Vec::new(), Vec::new());
+        for log in logs {
+            let files = match log {
+                LogFiles::Container(path) => return Err(Error::Container { path }),
+                LogFiles::Csv(files) => files,
+            };
+            let (plan, logged) = reading.logged(&files, Wanted::Plan)?;
+            let (file, samples) = (plan.file.clone(), plan.times.len());
+            if samples < FEWEST_SAMPLES {
+                return Err(Error::Short { file, samples });
             }
-        };
-        logs.into_iter().map(plan).collect()
+            notes.extend(logged.notes);
+            plans.push(plan);
+        }
+        Ok((plans, notes))
     }
 
     /// Returns the plan at a part of its speed, above 0 and up to 1. Steps are divided so that they

@@ -179,7 +179,8 @@ pub(crate) fn reach(
     }
     let model = TrackingModel::open(model)?;
     let body = robot.map(|name| body_of(&robot_of(&model, name)?, name, None)).transpose()?;
-    let plans = Plan::read(&data.data, &model, data.until)?;
+    let (plans, notes) = Plan::read(&data.data, &model, data.until)?;
+    output::notes(&notes);
     let sets = plans.iter().map(|plan| followed(&model, plan));
     let sets: Vec<SuiteReach> = sets.collect::<Result<_, _>>()?;
     let written = Written::all(&sets, out);

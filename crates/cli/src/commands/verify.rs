@@ -56,6 +56,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         let bar = Progress::new();
         job.run(&bar)?
     };
+    output::notes(&verified.notes);
     if let Some(Opened { model, problem, .. }) = &verified.opened {
         print_notes(model, problem, until, "until = SECONDS in the scenario changes the limit");
     }

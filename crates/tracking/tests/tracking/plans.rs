@@ -178,3 +178,17 @@ fn deviations_bound_every_plan_at_the_same_time_and_along_the_path() {
         }
     }
 }
+
+/// A joint that never moved is in no plan that moves it, at any speed.
+#[test]
+fn a_joint_that_stood_still_is_not_moved_slowly_instead() {
+    let mut recordings = servo(6);
+    for of in &mut recordings {
+        of.command.iter_mut().skip(1).step_by(2).for_each(|r| *r = 0.5);
+        let noise = |(k, q): (usize, &mut f64)| *q = 0.5 + 1e-5 * f64::from(k as u32 % 3);
+        of.actual.iter_mut().skip(1).step_by(2).enumerate().for_each(noise);
+    }
+    let text = made(&recordings).model.tube(&plan(104, 0.1)).unwrap_err().to_string();
+    assert!(text.contains("of elbow") && !text.contains("% of its speed"), "{text}");
+    assert!(text.contains("; make the model of recordings"), "{text}");
+}

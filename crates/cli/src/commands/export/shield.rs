@@ -61,7 +61,8 @@ fn motions(args: &Arguments) -> Result<(Robot, Vec<SuiteReach>)> {
              plans with --data",
         ));
     };
-    let plans = Plan::read(plans, &model, args.until)?;
+    let (plans, notes) = Plan::read(plans, &model, args.until)?;
+    output::notes(&notes);
     let reached = plans.iter().map(|plan| followed(&model, plan)).collect::<Result<_, _>>()?;
     if !model.is_useful() {
         output::warn(NOT_USEFUL);
