@@ -107,7 +107,7 @@ pub(crate) fn plan_tube<'py>(
 pub(crate) fn tolerances(py: Python<'_>, model: &str) -> PyResult<Vec<(String, f64, f64)>> {
     let model = parsed(model).map_err(|failure| failure.raised(py))?;
     let of_joints = model.joints.iter().map(|joint| {
-        let [at_rest, along] = joint.largest_deviations(model.delay);
+        let [at_rest, along] = joint.largest_deviations([model.delay, model.step]);
         (joint.name.clone(), along, at_rest)
     });
     Ok(of_joints.collect())

@@ -10,21 +10,23 @@ use reachtube_scalar::rounding::{add_up, mul_up};
 use crate::model::{JointTracking, TrackingModel};
 
 impl JointTracking {
-    /// Returns the largest |y - r| that a model with a delay \[s\] allows where a command has come
-    /// to rest, with any recorded acceleration, and for any command up to the recorded speed and
-    /// acceleration, rad.
+    /// Returns the largest |y - r| that a model with a delay and a usual step \[s\] allows where a
+    /// command has come to rest, with any recorded acceleration, and for any command up to the
+    /// recorded speed and acceleration, rad.
     ///
     /// # Guarantee
     ///
-    /// Outer, directed rounding.
+    /// Outer, directed rounding. Between samples a command is faster than at them by what its
+    /// acceleration does within half a step.
     #[must_use]
-    pub fn largest_deviations(&self, delay: f64) -> [f64; 2] {
+    pub fn largest_deviations(&self, [delay, step]: [f64; 2]) -> [f64; 2] {
         let product = |(factor, largest): (f64, f64)| mul_up(factor.abs(), largest);
         let accelerated = product((self.acceleration, self.largest_acceleration));
         let at_rest = add_up(add_up(self.offset.abs(), self.radius), accelerated);
         let terms = [
             (self.speed, self.largest_speed),
             (delay, self.largest_speed),
+            (mul_up(delay, step), self.largest_acceleration),
             (self.radius_per_speed, self.largest_speed),
             (self.direction, 1.0),
         ];
@@ -108,7 +110,7 @@ impl TrackingModel {
              two digits.\nconstraints:\n"
         );
         for joint in &self.joints {
-            let [at_rest, along] = joint.largest_deviations(self.delay);
+            let [at_rest, along] = joint.largest_deviations([self.delay, self.step]);
             let _ = writeln!(text, "  {}:", joint.name);
             let speed = two_digits_up(joint.largest_speed);
             let [along, goal] = [along, at_rest].map(two_digits_up);
