@@ -34,7 +34,6 @@ pub struct TrackingModel {
     /// Whether every sample was proved to lie in the sets, with directed rounding.
     pub verified: bool,
     /// The delay of the command, the same for all joints, s.
-    #[serde(default)]
     pub delay: f64,
     /// The joints.
     pub joints: Vec<JointTracking>,

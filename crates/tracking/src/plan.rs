@@ -5,6 +5,7 @@ use std::path::Path;
 use reachtube_logs::LogFiles;
 use reachtube_recordings::Wanted;
 use reachtube_scalar::Interval;
+use reachtube_scalar::number::significant;
 
 use crate::basis::{delayed, rates};
 use crate::error::{Error, Result};
@@ -45,6 +46,7 @@ impl Plan {
                 return Err(Error::Short { file, samples });
             }
             notes.extend(logged.notes);
+            notes.extend(plan.long_step(model.step));
             plans.push(plan);
         }
         Ok((plans, notes))
@@ -84,6 +86,21 @@ impl Plan {
     #[must_use]
     pub fn name(&self) -> String {
         self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// Returns a note on a step that is much longer than those of the recordings.
+    fn long_step(&self, usual: f64) -> Option<String> {
+        let steps = self.times.windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
+        let (step, time) = steps.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (step > LONG * usual).then(|| {
+            format!(
+                "{}: the step of {} s at {time:.3} s is {:.0} times as long as those of the \
+                 recordings, and the set is wide there; give the plan at their rate",
+                self.file.display(),
+                significant(step, 3),
+                step / usual
+            )
+        })
     }
 
     /// Encloses ṙ and r̈ of a joint at sample `k`.
@@ -185,6 +202,9 @@ impl TrackingModel {
         }
     }
 }
+
+/// A step of a plan that is longer than this many of the recordings is noted.
+const LONG: f64 = 3.0;
 
 /// A step of a plan counts as one of the recordings up to this part longer.
 const AS_LONG: f64 = 0.5;

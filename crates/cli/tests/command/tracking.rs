@@ -221,6 +221,16 @@ fn a_plan_has_a_tube_in_radians_and_millimetres() {
     assert!(number("links", 1) > 0.3 * joints[1] && joints[1] > 5e-3, "{answer}");
     assert_eq!(lab.read("reach/plan.csv").lines().count(), 601);
     assert_eq!(lab.read("reach/plan_tube.csv").lines().count(), 600);
+    // The header may be the joints' names alone, and a long step is noted.
+    let text = lab.read("plan.csv").replacen("shoulder_pos,elbow_pos", "shoulder,elbow", 1);
+    lab.write("plain.csv", &text);
+    let plain = lab.run("reach --model arm/model.json --plan plain.csv --out plain").exits(0);
+    assert!(plain.stdout.contains("plain: 600 samples"), "{}", plain.stdout);
+    let few = text.lines().enumerate().filter(|(at, _)| !(300..320).contains(at));
+    let few: String = few.map(|(_, line)| format!("{line}\n")).collect();
+    lab.write("few.csv", few);
+    let run = lab.run("reach --model arm/model.json --plan few.csv --out few").exits(0);
+    run.notes("few.csv: the step of 0.21 s at 2.980 s is 21 times as long");
     // A log is a plan too, and without a robot there are no millimetres.
     let run = lab.run("reach --model arm/model.json --data logs --out all").exits(0);
     assert!(run.stdout.contains("motion_8: ") && !run.stdout.contains(" mm "), "{}", run.stdout);

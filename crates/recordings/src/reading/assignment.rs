@@ -223,6 +223,12 @@ impl Finder<'_> {
             if let Ok(Some(columns)) = self.given_by("r", joints) {
                 return Ok((columns, vec![]));
             }
+            // The header may be the joints' names and nothing else.
+            let named = |name: &String| self.columns.iter().find(|of| of.text == *name).cloned();
+            let named: Option<Vec<Column>> = joints.names.iter().map(named).collect();
+            if let Some(columns) = named.filter(|columns| !columns.is_empty()) {
+                return Ok((columns, vec![]));
+            }
             let origins = [Origin::Target, Origin::Unstated, Origin::Measured];
             if let Some(found) = self.matched(Quantity::Position, &origins, joints)? {
                 return Ok(found);
