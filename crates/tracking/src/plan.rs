@@ -88,14 +88,14 @@ impl Plan {
         self.file.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Returns a note on a step that is much longer than those of the recordings.
+    /// Returns a note on a step that is much longer than the recorded steps.
     fn long_step(&self, usual: f64) -> Option<String> {
         let steps = self.times.windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
         let (step, time) = steps.max_by(|a, b| a.0.total_cmp(&b.0))?;
         (step > LONG * usual).then(|| {
             format!(
-                "{}: the step of {} s at {time:.3} s is {:.0} times as long as those of the \
-                 recordings, and the set is wide there; give the plan at their rate",
+                "{}: the step of {} s at {time:.3} s is {:.0} times as long as the recorded steps, \
+                 and the set is wide there; give the plan at the rate of the logs",
                 self.file.display(),
                 significant(step, 3),
                 step / usual
