@@ -57,20 +57,30 @@ pub(crate) fn delayed(times: &[f64], command: &[f64], delay: f64) -> Vec<f64> {
         return command.to_vec();
     }
     let n = command.len() / times.len();
-    let mut late = Vec::with_capacity(command.len());
-    let mut before = 0;
-    for time in times {
-        let at = (time - delay).max(times[0]);
-        while before + 2 < times.len() && times[before + 1] <= at {
-            before += 1;
-        }
-        let part = ((at - times[before]) / (times[before + 1] - times[before])).clamp(0.0, 1.0);
-        late.extend((0..n).map(|joint| {
-            let [here, next] = [before, before + 1].map(|k| command[k * n + joint]);
-            between(here, next, part)
-        }));
-    }
-    late
+    let late = |k: usize| {
+        let place = before(times, delay, k);
+        (0..n).map(move |joint| at_place(command, n, place, joint))
+    };
+    (0..times.len()).flat_map(late).collect()
+}
+
+/// Returns where a delay before sample `k` lies: a sample, and the part of the way to the next one.
+pub(crate) fn before(times: &[f64], delay: f64, k: usize) -> (usize, f64) {
+    let at = (times[k] - delay).max(times[0]);
+    let sample = times[..=k].partition_point(|time| *time <= at).max(1) - 1;
+    let sample = sample.min(times.len() - 2);
+    (sample, ((at - times[sample]) / (times[sample + 1] - times[sample])).clamp(0.0, 1.0))
+}
+
+/// Returns the command of a joint at a place that [`before`] returned.
+pub(crate) fn at_place(
+    command: &[f64],
+    n: usize,
+    (sample, part): (usize, f64),
+    joint: usize,
+) -> f64 {
+    let [here, next] = [sample, sample + 1].map(|k| command[k * n + joint]);
+    between(here, next, part)
 }
 
 /// Returns the command at a part of the way from one sample to the next.

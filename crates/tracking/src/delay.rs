@@ -1,9 +1,9 @@
 //! One delay of the command for the whole arm.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use crate::basis::{delayed, rates};
+use crate::basis::{at_place, before, rates};
 use crate::recording::TrackedRun;
 
 /// Longest delay that is tried, s.
@@ -44,29 +44,50 @@ pub(crate) fn best(recordings: &[&TrackedRun]) -> f64 {
 
 /// Returns the part of the squares of the errors that is left, as the sum over the joints.
 fn left(recordings: &[&TrackedRun], delay: f64, stride: usize) -> f64 {
-    let late: Vec<Vec<f64>> =
-        recordings.iter().map(|of| delayed(&of.times, &of.command, delay)).collect();
     let n = recordings[0].joint_count();
-    let of_joint = |joint: usize| {
-        let (mut normal, mut right) = (DMatrix::<f64>::zeros(3, 3), DVector::<f64>::zeros(3));
-        let (mut square, mut all) = (0.0, 0.0);
-        for (of, late) in recordings.iter().zip(&late) {
-            for k in (0..of.times.len()).step_by(stride) {
-                let at = k * n + joint;
-                let [speed, acceleration] = rates(k, &of.times, |k| late[k * n + joint]);
-                let terms = DVector::from_row_slice(&[1.0, speed, acceleration]);
-                let error = of.actual[at] - late[at];
-                normal += &terms * terms.transpose();
-                right += &terms * error;
-                square += error * error;
-                all += of.error(k, joint).powi(2);
+    let mut sums = vec![LagSums::default(); n];
+    for of in recordings {
+        let (times, last) = (&of.times, of.times.len() - 1);
+        for k in (0..=last).step_by(stride) {
+            // The rates need the command at three samples.
+            let middle = k.clamp(1, last - 1);
+            let places = [middle - 1, middle, middle + 1].map(|k| before(times, delay, k));
+            for (joint, sums) in sums.iter_mut().enumerate() {
+                let late = |k: usize| at_place(&of.command, n, places[k + 1 - middle], joint);
+                let [speed, acceleration] = rates(k, times, late);
+                let error = of.actual[k * n + joint] - late(k);
+                sums.add([1.0, speed, acceleration].into(), error, of.error(k, joint));
             }
         }
-        let factors = normal.svd(true, true).solve(&right, 1e-12).unwrap_or_default();
-        match factors.len() {
-            3 if all > 0.0 => (square - factors.dot(&right)).max(0.0) / all,
+    }
+    sums.iter().map(LagSums::left).sum()
+}
+
+/// Sums of the least squares of a joint.
+#[derive(Debug, Clone, Default)]
+struct LagSums {
+    normal: Matrix3<f64>,
+    right: Vector3<f64>,
+    square: f64,
+    /// The squares without a delay and without a fit.
+    all: f64,
+}
+
+impl LagSums {
+    fn add(&mut self, terms: Vector3<f64>, error: f64, plain: f64) {
+        self.normal += terms * terms.transpose();
+        self.right += terms * error;
+        self.square += error * error;
+        self.all += plain * plain;
+    }
+
+    /// Returns the part of the squares that the best factors leave.
+    fn left(&self) -> f64 {
+        match self.normal.svd(true, true).solve(&self.right, 1e-12) {
+            Ok(factors) if self.all > 0.0 => {
+                (self.square - factors.dot(&self.right)).max(0.0) / self.all
+            }
             _ => 0.0,
         }
-    };
-    (0..n).map(of_joint).sum()
+    }
 }
