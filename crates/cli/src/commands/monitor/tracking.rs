@@ -1,7 +1,7 @@
 //! `reachtube monitor` of an arm under its controller.
 
 use reachtube::finding::Table;
-use reachtube::number::counted;
+use reachtube::number::{at_least, counted};
 use reachtube::tracking::{JudgedSample, TrackingModel, TrackingMonitor};
 use reachtube_files::SealedFile;
 use schemars::JsonSchema;
@@ -127,7 +127,8 @@ impl ArmWatch {
             match self.json {
                 true => line(&TrackingEvent::Left { time, joint, needed })?,
                 false => output::print(&format!(
-                    "{time:.4} s: {joint} leaves its set: it needs {needed:.2} times the set\n"
+                    "{time:.4} s: {joint} leaves its set: it needs {} times the set\n",
+                    at_least(needed)
                 ))?,
             }
         }
@@ -155,7 +156,7 @@ impl ArmWatch {
             0 => String::new(),
             gaps => format!("; {}, after which it began anew", counted(gaps, "gap")),
         };
-        let row = |(joint, needed): (&str, &f64)| vec![joint.into(), format!("{needed:.2}")];
+        let row = |(joint, needed): (&str, &f64)| vec![joint.into(), at_least(*needed)];
         let names = self.monitor.model().joints.iter().map(|joint| joint.name.as_str());
         let rows = names.zip(largest).map(row).collect();
         output::print(&format!(
