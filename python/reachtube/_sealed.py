@@ -95,3 +95,28 @@ class SealedModel(Record):
         if self.verified and not self.useful:
             word += ", but vacuous"
         return f"<{type(self).__name__} {word}: {len(self._model['recordings'])} recordings>"
+
+
+class SampleCheck(Record):
+    """The answer of a check: whether recorded values lie in the sets."""
+
+    __slots__ = ()
+    _values: ClassVar[str]
+
+    @property
+    def conformant(self) -> bool:
+        """Whether every value at every sample was proved to lie in its set."""
+        return bool(self._content["conformant"])
+
+    @property
+    def outside(self) -> int:
+        """The number of values that were not proved to lie in their sets."""
+        return int(self._content["outside"])
+
+    def __bool__(self) -> bool:
+        return self.conformant
+
+    def __repr__(self) -> str:
+        word = "conformant" if self.conformant else "not conformant"
+        count = self._content[self._values]
+        return f"<{type(self).__name__} {word}: {self.outside} of {count} {self._values} outside>"

@@ -10,8 +10,7 @@ import numpy as np
 
 from . import _reachtube
 from ._arrays import Array, frozen, numbers
-from ._record import Record
-from ._sealed import SealedModel
+from ._sealed import SampleCheck, SealedModel
 from ._values import Values
 from .errors import SettingError
 
@@ -67,32 +66,16 @@ class SystemModel(SealedModel):
         ]
 
 
-class SystemCheck(Record):
+class SystemCheck(SampleCheck):
     """The answer of a check: whether recorded outputs lie in the reachable set."""
 
     __slots__ = ()
-
-    @property
-    def conformant(self) -> bool:
-        """Whether every output at every sample was proved to lie in the set."""
-        return bool(self._content["conformant"])
-
-    @property
-    def outside(self) -> int:
-        """The number of outputs that were not proved to lie in the set."""
-        return int(self._content["outside"])
+    _values: ClassVar[str] = "values"
 
     @property
     def runs(self) -> list[dict[str, Any]]:
         """For each recording the part of the sets that it needs, with output and time."""
         return list(self._content["runs"])
-
-    def __bool__(self) -> bool:
-        return self.conformant
-
-    def __repr__(self) -> str:
-        word = "conformant" if self.conformant else "not conformant"
-        return f"<SystemCheck {word}: {self.outside} of {self._content['values']} outputs outside>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -12,8 +12,7 @@ import numpy.typing as npt
 
 from . import _reachtube
 from ._arrays import Array, above_zero, frozen, numbers
-from ._record import Record
-from ._sealed import SealedModel
+from ._sealed import SampleCheck, SealedModel
 from ._values import Values
 from .errors import SettingError
 
@@ -181,33 +180,16 @@ class TrackingModel(SealedModel):
         return {link: time if same_time else path for link, path, time in links}
 
 
-class TrackingCheck(Record):
+class TrackingCheck(SampleCheck):
     """The answer of a check: whether actual positions lie in the sets."""
 
     __slots__ = ()
-
-    @property
-    def conformant(self) -> bool:
-        """Whether every position at every sample was proved to lie in its set."""
-        return bool(self._content["conformant"])
-
-    @property
-    def outside(self) -> int:
-        """The number of positions that were not proved to lie in their sets."""
-        return int(self._content["outside"])
+    _values: ClassVar[str] = "positions"
 
     @property
     def motions(self) -> list[dict[str, Any]]:
         """For each motion the part of the sets that it needs, with joint and time."""
         return list(self._content["motions"])
-
-    def __bool__(self) -> bool:
-        return self.conformant
-
-    def __repr__(self) -> str:
-        word = "conformant" if self.conformant else "not conformant"
-        positions = self._content["positions"]
-        return f"<TrackingCheck {word}: {self.outside} of {positions} positions outside>"
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -206,9 +206,10 @@ def verify(scenario: Toml, *, progress: Progress = None) -> Verification:
     ----------
     scenario
         The path of a TOML file, or its keys: ``model`` with a model or its path, ``data`` with
-        recordings as for `check`, and ``obstacle`` with a list of obstacles. The guide "From sets
-        to safety" describes all keys. Paths are relative to the file's folder, or to the current
-        one if keys are given.
+        recordings as for `check`, and ``obstacle`` with a list of obstacles. For the file of a
+        `TrackingModel`, ``plan`` and ``robot`` with their paths replace ``data``. The guide "From
+        sets to safety" describes all keys. Paths are relative to the file's folder, or to the
+        current one if keys are given.
     progress
         As for `conform`.
 

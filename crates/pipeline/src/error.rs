@@ -25,19 +25,6 @@ pub enum Error {
     /// A plan cannot be followed as a model says.
     #[error(transparent)]
     Tracking(Box<reachtube_tracking::Error>),
-    /// A robot has other joints than a model of the arm under its controller.
-    #[error(
-        "{}: the robot has the joints {joints}, but the model has {of_model}; make the model with \
-         `--robot`, of this robot", robot.display()
-    )]
-    OtherJoints {
-        /// The robot.
-        robot: PathBuf,
-        /// Its joints.
-        joints: String,
-        /// The joints of the model.
-        of_model: String,
-    },
     /// A file could not be read.
     #[error(transparent)]
     File(#[from] reachtube_files::Error),
@@ -125,7 +112,7 @@ pub enum Error {
 
 reachtube_files::kinds!(Error {
     [Identify | Conform | Robot | Abstraction | Verify | Tracking | File] => inner,
-    Settings | Choice | HeldOut | NothingLeft | OtherJoints => Setting,
+    Settings | Choice | HeldOut | NothingLeft => Setting,
     NoSets => NoAnswer,
     _ => Recordings,
 });

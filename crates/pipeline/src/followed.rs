@@ -12,7 +12,7 @@ use reachtube_tracking::{Plan, TrackingModel};
 use reachtube_verify::{Body, Capsules};
 
 use crate::code::Code;
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// The warning where a model is used that is no better than none.
 pub const NOT_USEFUL: &str = "The model is not proved, or its sets are no narrower than the \
@@ -24,7 +24,8 @@ pub const NOT_USEFUL: &str = "The model is not proved, or its sets are no narrow
 ///
 /// # Guarantee
 ///
-/// Outer, directed rounding, as [`TrackingModel::tube`].
+/// Outer, directed rounding, as [`TrackingModel::tube`]. The velocities are what the positions may
+/// do between samples; nothing is claimed of recorded velocities.
 ///
 /// # Errors
 ///
@@ -88,19 +89,12 @@ pub(crate) fn beyond_proof_of_plans(model: &TrackingModel) -> Vec<Finding> {
 ///
 /// # Errors
 ///
-/// A robot that cannot be read, and [`Error::OtherJoints`].
+/// A robot that cannot be read, or has other joints.
 pub fn robot_of(model: &TrackingModel, robot: &str) -> Result<Robot> {
     let (loaded, _) = Robot::load_to_identify(robot, &[])?;
-    let own: Vec<&str> = loaded.joints().iter().map(|joint| &*joint.name).collect();
-    let of_model: Vec<&str> = model.joints.iter().map(|joint| &*joint.name).collect();
-    match own == of_model {
-        true => Ok(loaded),
-        false => Err(Error::OtherJoints {
-            robot: Path::new(robot).into(),
-            joints: own.join(", "),
-            of_model: of_model.join(", "),
-        }),
-    }
+    let joints: Vec<String> = loaded.joints().iter().map(|joint| joint.name.clone()).collect();
+    model.refuse_other(robot.as_ref(), &joints)?;
+    Ok(loaded)
 }
 
 /// Returns the links of a robot that was loaded by name or path: with the capsules of a file, or

@@ -42,7 +42,8 @@ enum Moving {
 pub struct Verified {
     /// The model, the recordings and the reachable sets; `None` for plans.
     pub opened: Option<Opened>,
-    /// How plans were read; the recordings have notes of their own.
+    /// How plans were read, and for what alone the verdict holds; recordings have notes of their
+    /// own.
     pub notes: Vec<String>,
     /// The capsules around the links.
     pub body: Body,
@@ -73,7 +74,6 @@ impl ScenarioJob {
             return Ok(Self { scenario, motions, body, scene });
         }
         let (model, setup) = reachtube_arm::open(&scenario.model)?;
-        scenario.recordings()?;
         Self::with_model(scenario, model, setup)
     }
 
@@ -83,6 +83,7 @@ impl ScenarioJob {
     ///
     /// As [`new`](Self::new).
     pub fn with_model(scenario: Scenario, model: Model, setup: Setup) -> Result<Self> {
+        scenario.refuse_plan()?;
         let robot = Robot::from_description(&model.robot())?;
         let scene = scenario.scene(&robot)?;
         let body = Body::new(&robot, &Capsules::open(scenario.capsules.as_deref(), &robot)?);
@@ -98,8 +99,7 @@ impl ScenarioJob {
     ///
     /// # Errors
     ///
-    /// As [`check_job`], [`CheckJob::open`], [`verify`],
-    /// [`Plan::read`] and [`followed`].
+    /// As [`check_job`], [`CheckJob::open`], [`verify`], [`Plan::read`] and [`followed`].
     pub fn run(self, progress: &dyn Progress) -> Result<Verified> {
         let Self { scenario, motions, body, scene } = self;
         match motions {
@@ -164,7 +164,8 @@ fn planned(
     (body, scene): (Body, Scene),
 ) -> Result<Verified> {
     let (path, _) = scenario.planned()?;
-    let (plans, notes) = Plan::read(path, model, scenario.until)?;
+    let (plans, mut notes) = Plan::read(path, model, scenario.until)?;
+    notes.extend(model.conditions());
     let decide = |plan: &Plan| {
         let at_speed = |part: f64| followed(model, &plan.slowed(part)).ok();
         Ok(verify_plan(robot, (&body, &scene), &at_speed, followed(model, plan)?)?)

@@ -2,7 +2,7 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::model::TrackingModel;
 use crate::motion::{MotionRows, motions};
 use crate::plan::AS_FAST;
@@ -59,18 +59,11 @@ impl TrackingModel {
     ///
     /// # Errors
     ///
-    /// [`Error::Joints`] for recordings of other joints than the model's.
+    /// [`Error::OtherJoints`](crate::Error::OtherJoints) for recordings of other joints than the
+    /// model's.
     pub fn check(&self, recordings: &[TrackedRun]) -> Result<TrackingCheck> {
         check(recordings)?;
-        let own: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
-        if let Some(other) = recordings.iter().find(|of| of.joints != own) {
-            return Err(Error::Joints {
-                file: other.file.clone(),
-                joints: other.joints.clone(),
-                other: "the model".into(),
-                others: own,
-            });
-        }
+        recordings.iter().try_for_each(|of| self.refuse_other(&of.file, &of.joints))?;
         // For each motion and joint: the furthest sample, what it needs, and how many are outside.
         let motions = motions(recordings);
         let recordings: Vec<TrackedRun> =

@@ -46,6 +46,20 @@ pub enum Error {
         /// The joints of that.
         others: Vec<String>,
     },
+    /// A recording or a robot has other joints than the model.
+    #[error(
+        "{}: it has the joints {}, but the model has {}; give what is of the model's arm, or make \
+         the model with `--robot`, of this robot",
+        file.display(), joints.join(", "), of_model.join(", ")
+    )]
+    OtherJoints {
+        /// The recording, or the robot.
+        file: PathBuf,
+        /// Its joints.
+        joints: Vec<String>,
+        /// The joints of the model.
+        of_model: Vec<String>,
+    },
     /// A recording has too few samples.
     #[error("{}: it has {samples} samples; a motion needs 3 at least", file.display())]
     Short {
@@ -100,7 +114,7 @@ pub enum Error {
 
 reachtube_files::kinds!(Error {
     [Recordings | File] => inner,
-    NoData => Setting,
+    NoData | OtherJoints => Setting,
     Program => NoAnswer,
     _ => Recordings,
 });

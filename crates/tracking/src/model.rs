@@ -1,5 +1,7 @@
 //! The model file of an arm under its controller.
 
+use std::path::Path;
+
 use reachtube_files::{FileHead, SealedFile};
 use reachtube_recordings::{Axis, ColumnSettings};
 use reachtube_scalar::Interval;
@@ -8,6 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::basis::{TERMS, enclosed_direction};
+use crate::error::{Error, Result};
 use crate::recording::TrackedRun;
 
 /// What the field `format` of every file says.
@@ -219,6 +222,19 @@ impl TrackingModel {
     #[must_use]
     pub fn has_motions(&self) -> bool {
         self.left_out.motions >= 3
+    }
+
+    /// Refuses a recording or a robot of other joints.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OtherJoints`].
+    pub fn refuse_other(&self, file: &Path, joints: &[String]) -> Result<()> {
+        let of_model: Vec<String> = self.joints.iter().map(|joint| joint.name.clone()).collect();
+        if joints == of_model {
+            return Ok(());
+        }
+        Err(Error::OtherJoints { file: file.into(), joints: joints.to_vec(), of_model })
     }
 
     /// Returns the model of recordings that were read with some columns.

@@ -168,11 +168,15 @@ impl Unbroken {
             self.late.extend_from_slice(command);
             return;
         }
-        self.commands.push_back((time, command.to_vec()));
         let at = (time - delay).max(0.0);
-        while self.commands.len() > 2 && self.commands[1].0 <= at {
-            self.commands.pop_front();
+        // The memory of a sample that is no longer needed serves the new one.
+        let mut memory = Vec::new();
+        while self.commands.len() > 1 && self.commands[1].0 <= at {
+            memory = self.commands.pop_front().unwrap_or_default().1;
         }
+        memory.clear();
+        memory.extend_from_slice(command);
+        self.commands.push_back((time, memory));
         match (&self.commands[0], self.commands.get(1)) {
             ((before, from), Some((after, to))) => {
                 let part = ((at - before) / (after - before)).clamp(0.0, 1.0);

@@ -58,12 +58,23 @@ impl TrackingModel {
     ///
     /// # Guarantee
     ///
-    /// Outer, directed rounding, for plans whose accelerations are bounded so at every time.
+    /// Outer, directed rounding, for plans with samples as often as the recordings, and speeds and
+    /// accelerations that are bounded so at every time.
     #[must_use]
     pub fn deviations(&self, part: f64) -> PlanDeviations {
         let of = |late: f64| -> Vec<f64> {
             let after_delay = Interval::point(late) - self.delay;
-            self.joints.iter().map(|joint| joint.deviation(part, after_delay, self.step)).collect()
+            let of_joint = |joint: &JointTracking| {
+                let bound = joint.deviation(part, after_delay, self.step);
+                if self.delay == 0.0 {
+                    return bound.hi();
+                }
+                // The delayed command is straight between samples.
+                let step = Interval::point(self.step);
+                let largest = Interval::point(part).sqr() * joint.largest_acceleration;
+                (bound + step.sqr() * 0.125 * largest).hi()
+            };
+            self.joints.iter().map(of_joint).collect()
         };
         let sum = |late: &f64| of(*late).iter().sum::<f64>();
         let lags = self.joints.iter().map(|joint| self.delay - joint.speed);
@@ -77,7 +88,7 @@ impl JointTracking {
     /// Bounds |y(t) - r(t - delay - late)| for commands up to a part of the recorded speed. The
     /// speed of the parabola through three samples differs from the command's by what it can change
     /// within half a step.
-    fn deviation(&self, part: f64, late: Interval, step: f64) -> f64 {
+    fn deviation(&self, part: f64, late: Interval, step: f64) -> Interval {
         let point = Interval::point;
         let speed = point(part) * self.largest_speed;
         let acceleration = point(part).sqr() * self.largest_acceleration;
@@ -85,7 +96,7 @@ impl JointTracking {
         let by_acceleration =
             point(self.acceleration.abs()) + late.sqr() * 0.5 + late.abs() * point(step) * 0.5;
         let fixed = point(self.offset.abs()) + self.direction.abs() + self.radius;
-        (fixed + by_speed * speed + by_acceleration * acceleration).hi()
+        fixed + by_speed * speed + by_acceleration * acceleration
     }
 }
 
@@ -107,7 +118,8 @@ impl TrackingModel {
         let mut text = format!(
             "# {MARK} export.\n# Tolerances of joint_trajectory_controller, in rad or m: what the \
              model allows for commands that\n# are no faster than the recorded ones, rounded up to \
-             two digits.\nconstraints:\n"
+             two digits.\n{}constraints:\n",
+            self.condition_lines()
         );
         for joint in &self.joints {
             let [at_rest, along] = joint.largest_deviations([self.delay, self.step]);
@@ -118,5 +130,11 @@ impl TrackingModel {
             let _ = writeln!(text, "    goal: {goal}");
         }
         text
+    }
+
+    /// Returns the [`conditions`](Self::conditions) as comments of a file.
+    #[must_use]
+    pub fn condition_lines(&self) -> String {
+        self.conditions().iter().map(|line| format!("# {line}\n")).collect()
     }
 }

@@ -104,6 +104,18 @@ impl TrackingModel {
         ))
     }
 
+    /// Returns for what alone plans, paddings and tolerances hold, in sentences.
+    #[must_use]
+    pub fn conditions(&self) -> [String; 2] {
+        let next = self.next_motion();
+        [
+            "The arm follows its plan from the first sample on, with payload, tool, contact, gains \
+             and temperature as recorded."
+                .into(),
+            format!("New motions: {next}."),
+        ]
+    }
+
     /// Returns what follows for the next motion, in words.
     #[must_use]
     pub fn next_motion(&self) -> String {

@@ -41,12 +41,16 @@ figures A_*.svg, and reach.json, which names model, settings, recordings and CSV
 
 Exit codes: 0 done, 1 a reachable set ended before its suite, 2 error.";
 
+/// What `--data` names; `--plan` is another name of it.
+const DATA: &str = "Folder with runs.csv, or logs for a model that `model` made; as --plan, plans \
+                    that an arm under its controller follows";
+
 /// Compute a model's reachable sets along recordings, at samples and between them
 #[derive(Debug, Args)]
 #[command(
     after_help = HELP,
     mut_arg("model", |arg| optional(arg).required_unless_present("system")),
-    mut_arg("data", |arg| optional(arg).required_unless_present("system").visible_alias("plan"))
+    mut_arg("data", |arg| optional(arg).required_unless_present("system").help(DATA).alias("plan"))
 )]
 pub(crate) struct Arguments {
     #[command(flatten)]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use reachtube::axes;
 use reachtube::conform::SuiteReach;
 use reachtube::finding::Table;
-use reachtube::pipeline::{body_of, followed, robot_of};
+use reachtube::pipeline::{NOT_USEFUL, body_of, followed, robot_of};
 use reachtube::recordings::ColumnSettings;
 use reachtube::robot::{Lock, Robot};
 use reachtube::scalar::Interval;
@@ -64,19 +64,16 @@ pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
     output::claim(&path)?;
     let robot = args.robot.map(|name| Robot::load_to_identify(name, args.lock)).transpose()?;
     let axes = robot.as_ref().map(|(robot, _)| axes(robot));
-    let body = robot.as_ref().zip(args.robot).map(|((robot, _), name)| body_of(robot, name, None));
-    // A robot without shapes has no links to speak of.
-    let body = body.and_then(Result::ok);
+    let body = links_of(robot.as_ref().map(|(robot, _)| robot).zip(args.robot));
     let ways = |from: &[Interval], shift: &[Interval]| {
         body.as_ref().map_or(vec![], |body| body.ways_of_links(from, shift))
     };
-    let joints = body.as_ref().map_or(vec![], Body::links);
-    let links = TrackedLinks { joints, ways: &ways };
+    let links = body.as_ref().map(|body| TrackedLinks { joints: body.links(), ways: &ways });
     let reading = Reading { axes: axes.as_deref(), columns: &args.columns, until: None };
     let (recordings, notes) = reading.read(args.data)?;
     output::notes(&notes);
     let bar = Progress::of("making a model");
-    let mut made = make(&recordings, Some(&links))?;
+    let mut made = make(&recordings, links.as_ref())?;
     made.model = made.model.with_columns(args.columns.clone());
     drop(bar);
     write::atomically(&path, |out| out.write_all(made.model.to_json().as_bytes()))?;
@@ -101,6 +98,27 @@ pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
         output::print_verdict(&summary.to_string(), &outcome)?;
     }
     Ok(outcome)
+}
+
+/// Returns the links of a robot that was named; a note says why a robot has none.
+fn links_of(robot: Option<(&Robot, &str)>) -> Option<Body> {
+    let (robot, name) = robot?;
+    match body_of(robot, name, None) {
+        Ok(body) => Some(body),
+        Err(error) => {
+            output::note(&format!("no distances of links: {error}"));
+            None
+        }
+    }
+}
+
+/// Prints for what alone the result of a model holds, and a warning where the model is no better
+/// than none.
+pub(crate) fn print_conditions(model: &TrackingModel) {
+    output::notes(&model.conditions());
+    if !model.is_useful() {
+        output::warn(NOT_USEFUL);
+    }
 }
 
 /// Compares logs with a model of an arm under its controller.
@@ -187,9 +205,7 @@ pub(crate) fn reach(
     let contents = written.iter().flat_map(Written::contents);
     let files: Vec<_> = contents.map(|(name, content)| (out.join(name), content)).collect();
     output::write_all(files.iter().map(|(path, content)| (path, &**content)))?;
-    if !model.is_useful() {
-        output::warn(reachtube::pipeline::NOT_USEFUL);
-    }
+    print_conditions(&model);
     let of_plan = |file| PlanOutput::new(file, &model, body.as_ref());
     let output = PlansOutput { plans: written.iter().map(of_plan).collect() };
     match json {

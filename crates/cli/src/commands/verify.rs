@@ -24,6 +24,9 @@ cell.toml names the model, the recordings and the obstacles (docs/verify.md):
   [[obstacle]]
   name = \"table\"
   half-space = { normal = [0, 0, 1], offset = -0.3 }
+A model of an arm under its controller takes plans in place of recordings (docs/tracking.md):
+  plan = \"plan.csv\"
+  robot = \"arm.urdf\"
 
 The folder gets a page with the worst motion in three dimensions, verify.html, and a picture of
 each motion, NAME.svg; if it is not safe, also the simulated motion that comes closest,

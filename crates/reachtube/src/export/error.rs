@@ -113,6 +113,9 @@ pub enum ExportError {
         /// The joint that moves the link.
         joint: String,
     },
+    /// A model of an arm under its controller is of another arm.
+    #[error(transparent)]
+    Tracking(#[from] reachtube_tracking::Error),
     /// The capsules of a robot's links cannot be read.
     #[error(transparent)]
     Verify(#[from] reachtube_verify::Error),
@@ -144,7 +147,7 @@ pub enum ExportError {
 }
 
 reachtube_files::kinds!(ExportError {
-    [Conform | Robot | Verify] => inner,
+    [Conform | Robot | Verify | Tracking] => inner,
     SeparateGravity | NotPhysical | Unreadable => Robot,
     EndsEarly | NoTime | NotUniform => Recordings,
     _ => Setting,

@@ -57,19 +57,8 @@ impl Paddings {
         let options = UrdfOptions { any_inertia: true, ..Default::default() };
         let loaded = Urdf::load(urdf, &options)?;
         let robot = loaded.robot();
-        let own: Vec<&str> = robot.joints().iter().map(|joint| &*joint.name).collect();
-        let of_model: Vec<&str> = model.joints.iter().map(|joint| &*joint.name).collect();
-        if own != of_model {
-            return Err(ExportError::Refused {
-                place: urdf.display().to_string(),
-                problem: format!(
-                    "it has the joints {}, but the model has {}",
-                    own.join(", "),
-                    of_model.join(", ")
-                ),
-                remedy: "make the model with `--robot`, of this URDF".into(),
-            });
-        }
+        let joints: Vec<String> = robot.joints().iter().map(|of| of.name.clone()).collect();
+        model.refuse_other(urdf, &joints)?;
         let folder = urdf.parent().unwrap_or(Path::new(""));
         let body = Body::new(robot, &Capsules::of_urdf(&loaded, folder)?);
         let deviations = model.deviations(part);
@@ -90,7 +79,7 @@ impl Paddings {
                 }
             }
         }
-        let file = ExportFile::new("moveit_padding.yaml", text(&links, &deviations));
+        let file = ExportFile::new("moveit_padding.yaml", text(model, &links, &deviations));
         Ok(Self { links, deviations, file })
     }
 }
@@ -107,15 +96,16 @@ fn ranges(robot: &Robot) -> Vec<Interval> {
     robot.joints().iter().map(range).collect()
 }
 
-fn text(links: &[LinkPadding], deviations: &PlanDeviations) -> String {
+fn text(model: &TrackingModel, links: &[LinkPadding], deviations: &PlanDeviations) -> String {
     let largest = links.iter().map(|of| of.along_the_path).fold(0.0, f64::max);
     let percent = 100.0 * deviations.part;
     let mut text = format!(
         "# {MARK} export.\n# How far links can be from the path of a plan, in m, rounded up: for \
          obstacles that stand still, and\n# plans up to {percent} % of the recorded speeds. For \
          obstacles that move, the number in the comment.\n# MoveIt 1 reads both entries; MoveIt 2 \
-         reads the first one, for all links.\nrobot_description_planning:\n  \
+         reads the first one, for all links.\n{}robot_description_planning:\n  \
          default_robot_padding: {}\n  default_robot_link_padding:\n",
+        model.condition_lines(),
         two_digits_up(largest)
     );
     for LinkPadding { link, at_the_same_time, along_the_path } in links {

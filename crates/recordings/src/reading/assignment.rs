@@ -108,8 +108,7 @@ impl Finder<'_> {
         let temperatures = temperatures.map(|(columns, _)| columns);
         let is_command = self.options.wanted == Wanted::Commands;
         let command = is_command.then(|| self.commands(&joints)).transpose()?;
-        let has_torques = matches!(self.options.wanted, Wanted::Torques | Wanted::AnyTorques);
-        let tau = if has_torques { self.torques(&joints)? } else { None };
+        let tau = if self.options.wanted.has_torques() { self.torques(&joints)? } else { None };
         let mut out = Assignment {
             time,
             q,

@@ -222,8 +222,7 @@ impl Log<'_> {
         let name = files[0].display();
         let named = |note: String| format!("{name}: {note}");
         let mut notes: Vec<String> = assignment.notes.iter().cloned().map(named).collect();
-        let has_torques = matches!(options.wanted, Wanted::Torques | Wanted::AnyTorques);
-        let is_missed = qd.is_none() && has_torques;
+        let is_missed = qd.is_none() && options.wanted.has_torques();
         notes.extend(units.notes(!is_missed).map(named));
         notes.extend(turn_notes(&mut run, files, &tables[0], &assignment.joints, options));
         if qd.is_none() {

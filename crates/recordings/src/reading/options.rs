@@ -15,6 +15,12 @@ pub enum Wanted {
     Plan,
 }
 
+impl Wanted {
+    pub(super) fn has_torques(self) -> bool {
+        matches!(self, Self::Torques | Self::AnyTorques)
+    }
+}
+
 /// How logs are read.
 #[derive(Debug, Clone, Copy)]
 pub struct LoggedOptions<'a> {

@@ -56,6 +56,6 @@ fn a_gap_begins_anew_and_is_counted() {
         monitor.push(of.times[k], rows, |_| count += 1);
     }
     monitor.finish(|_| count += 1);
-    // A log of the model lies inside, before and after the gap, where the ends have other speeds.
+    // Each sample is judged, before and after the gap.
     assert_eq!((count, monitor.counts()[0], monitor.counts()[2]), (500, 500, 1));
 }

@@ -178,20 +178,27 @@ impl Scenario {
         Ok(Scene { obstacles, clearance, refine: parts })
     }
 
-    /// Returns the recordings; names them if the scenario has none, or plans, which its model
-    /// cannot follow.
+    /// Returns the recordings.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Invalid`] without any.
+    pub fn recordings(&self) -> Result<&Path> {
+        let remedy = "give `data = \"FOLDER\"`, the recordings that the model moves under";
+        self.data.as_deref().ok_or_else(|| self.invalid(0, "", "there is no `data`", remedy))
+    }
+
+    /// Refuses a plan, and a robot to follow it, where the model is of torques and has its robot.
     ///
     /// # Errors
     ///
     /// [`Error::Invalid`].
-    pub fn recordings(&self) -> Result<&Path> {
-        let remedy = "a model of torques needs `data = \"FOLDER\"`, its recordings; plans need a \
-                      model of the arm under its controller, which `model` makes of commanded and \
-                      actual positions";
-        match (&self.data, &self.plan) {
-            (Some(data), None) => Ok(data),
-            (_, Some(_)) => Err(self.invalid(0, "", "it has a `plan`", remedy)),
-            (None, None) => Err(self.invalid(0, "", "there is no `data`", remedy)),
+    pub fn refuse_plan(&self) -> Result<()> {
+        let remedy = "the model is of torques, and has its robot: leave them out; a plan needs a \
+                      model of commanded and actual positions";
+        match self.plan.is_some() || self.robot.is_some() {
+            true => Err(self.invalid(0, "", "it has a `plan` or a `robot`", remedy)),
+            false => Ok(()),
         }
     }
 

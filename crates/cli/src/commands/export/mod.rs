@@ -10,7 +10,6 @@ use reachtube::export::{
     ExportCase, ExportError, ExportFile, InputForm, LinkPadding, Meaning, Paddings, Tool, files,
 };
 use reachtube::finding::Table;
-use reachtube::pipeline::NOT_USEFUL;
 use reachtube::tracking::{TrackingModel, width_up};
 use reachtube::{Robot, write};
 use reachtube_files::SealedFile;
@@ -21,6 +20,7 @@ pub(crate) use arguments::Arguments;
 use arguments::{Target, load_robot, model_file, open, refuse_unused, write_all};
 pub(crate) use shield::ShieldExport;
 
+use crate::commands::tracking::print_conditions;
 use crate::error::{Error, Result};
 use crate::file_names;
 use crate::outcome::Outcome;
@@ -135,6 +135,7 @@ fn tolerances(args: &Arguments, json: bool) -> Result<Outcome> {
     write::try_at(&path)?;
     let model = TrackingModel::open(model_file(args)?)?;
     output::write_all(std::iter::once((&path, model.ros2_control().as_bytes())))?;
+    print_conditions(&model);
     let joints = model.joints.iter().map(|joint| joint.name.as_str()).collect();
     let result = TolerancesExport { joints, file: path.display().to_string() };
     output::show(json, &result, || format!("exported to ros2_control:\n  {}\n", path.display()))?;
@@ -163,9 +164,7 @@ fn paddings(args: &Arguments, json: bool) -> Result<Outcome> {
         Paddings::new(&model, urdf.as_ref(), args.speed.unwrap_or(1.0))?;
     let path = args.out.join(&file.name);
     write_all(std::slice::from_ref(&path), std::iter::once(&file))?;
-    if !model.is_useful() {
-        output::warn(NOT_USEFUL);
-    }
+    print_conditions(&model);
     let result = PaddingsExport {
         part: deviations.part,
         late_by: deviations.late_by,

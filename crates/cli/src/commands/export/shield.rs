@@ -3,7 +3,7 @@
 use reachtube::arm::ArmModel;
 use reachtube::conform::SuiteReach;
 use reachtube::finding::Table;
-use reachtube::pipeline::{NOT_USEFUL, followed, robot_of};
+use reachtube::pipeline::{followed, robot_of};
 use reachtube::tracking::{Plan, TrackingModel};
 use std::path::{Path, PathBuf};
 
@@ -17,6 +17,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::arguments::{Arguments, model_file, open, write_all};
+use crate::commands::tracking::print_conditions;
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
 use crate::output;
@@ -64,9 +65,7 @@ fn motions(args: &Arguments) -> Result<(Robot, Vec<SuiteReach>)> {
     let (plans, notes) = Plan::read(plans, &model, args.until)?;
     output::notes(&notes);
     let reached = plans.iter().map(|plan| followed(&model, plan)).collect::<Result<_, _>>()?;
-    if !model.is_useful() {
-        output::warn(NOT_USEFUL);
-    }
+    print_conditions(&model);
     Ok((robot_of(&model, robot)?, reached))
 }
 

@@ -193,7 +193,8 @@ fn greatest(parts: &[f64]) -> (usize, f64) {
     parts.iter().enumerate().max_by(by_size).map_or((0, 0.0), |(state, part)| (state, *part))
 }
 
-fn line(event: &Event<'_>) -> Result<()> {
+/// Prints an event as one line of JSON.
+pub(super) fn line(event: &impl Serialize) -> Result<()> {
     let text = serde_json::to_string(event).expect("an event has string keys");
     output::print_json_text(&(text + "\n"))
 }

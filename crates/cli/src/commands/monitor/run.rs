@@ -10,7 +10,7 @@ use reachtube_files::SealedFile;
 use crate::commands::monitor::arguments::Arguments;
 use crate::commands::monitor::events::Events;
 use crate::commands::monitor::lines::{END_OF_INPUT, follow, wrong};
-use crate::commands::monitor::samples::{Form, Kinds, Sample};
+use crate::commands::monitor::samples::{Kinds, Sample, Samples};
 use crate::commands::monitor::tracking;
 use crate::error::Result;
 use crate::outcome::Outcome;
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
     let mut watch = Watch {
         args,
         model: &model,
-        form: None,
+        samples: Samples::new(model.inputs(), KINDS),
         first: Vec::new(),
         monitor: None,
         events: Events::new(model.signals.clone(), json),
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 struct Watch<'a> {
     args: &'a Arguments,
     model: &'a Model,
-    form: Option<Form>,
+    samples: Samples,
     /// The samples before the time between samples is known, with their lines.
     first: Vec<(u64, Sample)>,
     monitor: Option<LiveMonitor>,
@@ -73,18 +73,8 @@ struct Watch<'a> {
 
 impl Watch<'_> {
     fn take(&mut self, number: u64, line: &str) -> Result<()> {
-        let form = match &self.form {
-            Some(form) => form,
-            None => {
-                let form = Form::of(line, self.model.inputs(), KINDS);
-                let form = self.form.insert(form.map_err(|problem| wrong(number, &problem))?);
-                if matches!(form, Form::Csv(_)) {
-                    return Ok(());
-                }
-                form
-            }
-        };
-        let sample = form.sample(line, KINDS).map_err(|problem| wrong(number, &problem))?;
+        let read = self.samples.read(line).map_err(|problem| wrong(number, &problem))?;
+        let Some(sample) = read else { return Ok(()) };
         if self.monitor.is_some() {
             return self.judge(number, &sample);
         }

@@ -15,11 +15,43 @@ pub(super) struct Sample {
 
 /// Format of the lines.
 #[derive(Debug, PartialEq)]
-pub(super) enum Form {
+enum Form {
     /// One JSON object per line.
     Json,
     /// CSV: which cell each number has: t, then the numbers of each kind, joint by joint.
     Csv(Vec<usize>),
+}
+
+/// Lines as they come: the first one tells their format.
+pub(super) struct Samples {
+    form: Option<Form>,
+    joints: usize,
+    kinds: Kinds,
+}
+
+impl Samples {
+    pub(super) fn new(joints: usize, kinds: Kinds) -> Self {
+        Self { form: None, joints, kinds }
+    }
+
+    /// Reads a line; a header is no sample.
+    ///
+    /// # Errors
+    ///
+    /// The problem and the remedy.
+    pub(super) fn read(&mut self, line: &str) -> Result<Option<Sample>, String> {
+        let form = match &self.form {
+            Some(form) => form,
+            None => {
+                let form = self.form.insert(Form::of(line, self.joints, self.kinds)?);
+                if matches!(form, Form::Csv(_)) {
+                    return Ok(None);
+                }
+                form
+            }
+        };
+        form.sample(line, self.kinds).map(Some)
+    }
 }
 
 impl Form {
@@ -28,7 +60,7 @@ impl Form {
     /// # Errors
     ///
     /// The problem and the remedy.
-    pub(super) fn of(line: &str, joints: usize, kinds: Kinds) -> Result<Self, String> {
+    fn of(line: &str, joints: usize, kinds: Kinds) -> Result<Self, String> {
         if line.trim_start().starts_with('{') {
             return Ok(Self::Json);
         }
@@ -60,7 +92,7 @@ impl Form {
     /// # Errors
     ///
     /// The problem and the remedy.
-    pub(super) fn sample(&self, line: &str, kinds: Kinds) -> Result<Sample, String> {
+    fn sample(&self, line: &str, kinds: Kinds) -> Result<Sample, String> {
         let Self::Csv(cells) = self else {
             return of_json(line, kinds).map_err(|problem| {
                 let names = kinds.join(", ");

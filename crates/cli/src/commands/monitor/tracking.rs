@@ -8,8 +8,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::commands::monitor::arguments::Arguments;
+use crate::commands::monitor::events::line;
 use crate::commands::monitor::lines::{follow, wrong};
-use crate::commands::monitor::samples::{Form, Kinds, Sample};
+use crate::commands::monitor::samples::{Kinds, Sample, Samples};
 use crate::error::{Error, Result};
 use crate::outcome::Outcome;
 use crate::output;
@@ -56,7 +57,7 @@ pub(crate) enum TrackingEvent<'a> {
 struct ArmWatch {
     json: bool,
     monitor: TrackingMonitor,
-    form: Option<Form>,
+    samples: Samples,
     is_outside: bool,
     was_fast: Vec<bool>,
 }
@@ -71,8 +72,9 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
         ));
     }
     let monitor = TrackingMonitor::new(TrackingModel::open(&args.model)?);
-    let was_fast = vec![false; monitor.model().joints.len()];
-    let mut watch = ArmWatch { json, monitor, form: None, is_outside: false, was_fast };
+    let joints = monitor.model().joints.len();
+    let (samples, was_fast) = (Samples::new(joints, KINDS), vec![false; joints]);
+    let mut watch = ArmWatch { json, monitor, samples, is_outside: false, was_fast };
     let ended = follow(|number, line| watch.take(number, line));
     let mut last = None;
     watch.monitor.finish(|judged| last = Some(judged));
@@ -89,18 +91,8 @@ pub(super) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 impl ArmWatch {
     fn take(&mut self, number: u64, line: &str) -> Result<()> {
         let joints = self.was_fast.len();
-        let form = match &self.form {
-            Some(form) => form,
-            None => {
-                let form = Form::of(line, joints, KINDS);
-                let form = self.form.insert(form.map_err(|problem| wrong(number, &problem))?);
-                if matches!(form, Form::Csv(_)) {
-                    return Ok(());
-                }
-                form
-            }
-        };
-        let sample = form.sample(line, KINDS).map_err(|problem| wrong(number, &problem))?;
+        let read = self.samples.read(line).map_err(|problem| wrong(number, &problem))?;
+        let Some(sample) = read else { return Ok(()) };
         let Sample { t, parts } = sample;
         let numbers = parts.iter().flatten().chain([&t]);
         if parts.iter().any(|part| part.len() != joints) || !numbers.copied().all(f64::is_finite) {
@@ -164,9 +156,4 @@ impl ArmWatch {
             Table::new(["joint", "largest part of its set"], rows)
         ))
     }
-}
-
-fn line(event: &TrackingEvent<'_>) -> Result<()> {
-    let text = serde_json::to_string(event).expect("an event has string keys");
-    output::print_json_text(&(text + "\n"))
 }
