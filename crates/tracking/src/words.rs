@@ -109,8 +109,8 @@ impl TrackingModel {
     pub fn conditions(&self) -> [String; 2] {
         let next = self.next_motion();
         [
-            "The arm follows its plan from the first sample on, with payload, tool, contact, gains \
-             and temperature as recorded."
+            "This holds for an arm that follows its plan from the first sample on, with payload, \
+             tool, contact, gains and temperature as recorded."
                 .into(),
             format!("New motions: {next}."),
         ]

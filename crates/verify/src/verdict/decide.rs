@@ -19,7 +19,7 @@ type Result<T> = std::result::Result<T, Error>;
 pub(super) const PARTS: [u32; 2] = [64, 512];
 
 /// Halvings of the interval in which the factor of the sets lies, for motions and for stops.
-const HALVINGS: [u32; 2] = [6, 4];
+pub(super) const HALVINGS: [u32; 2] = [6, 4];
 
 /// Changes that decide an open question, found by trial.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
@@ -27,7 +27,7 @@ const HALVINGS: [u32; 2] = [6, 4];
 pub enum NextStep {
     /// Steps divided into this number of parts prove that the links stay clear.
     Refine(u32),
-    /// X0 and U scaled by this factor about their centres, with steps divided into 64 parts, prove
+    /// The sets scaled by this factor about their centres, with steps divided into 64 parts, prove
     /// that the links stay clear.
     SmallerSets(f64),
     /// The plan at this part of its speed is proved to stay clear.
@@ -96,7 +96,10 @@ pub(super) fn stop_advice(question: &Question, rule: &StopRule, index: usize) ->
 }
 
 /// Returns the largest factor of the sets that decides, found by bisection from 0, which does.
-fn largest(halvings: u32, decides: impl Fn(f64) -> Result<bool>) -> Result<NextStep> {
+pub(super) fn largest<E>(
+    halvings: u32,
+    decides: impl Fn(f64) -> core::result::Result<bool, E>,
+) -> core::result::Result<NextStep, E> {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..halvings {
         let middle = 0.5 * (low + high);

@@ -140,8 +140,8 @@ fn next(v: &Verification) -> Option<Finding> {
         NextStep::SmallerSets(factor) => info(
             Code::SetsTooLarge.into(),
             format!(
-                "{case}: with X0 and U {factor:.2} times as wide, all links would be proved to \
-                 stay clear; a better model or cleaner recordings give smaller sets."
+                "{case}: with uncertainty sets {factor:.2} times as wide, all links would be \
+                 proved to stay clear; a better model or cleaner recordings give smaller sets."
             ),
         )
         .with("factor", factor),

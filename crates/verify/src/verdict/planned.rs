@@ -1,5 +1,7 @@
 //! Verdicts about plans that an arm follows under its controller.
 
+use std::convert::Infallible;
+
 use reachtube_conform::SuiteReach;
 use reachtube_robot::Robot;
 
@@ -7,15 +9,12 @@ use crate::body::body::Body;
 use crate::error::{Error, Result};
 use crate::scene::scenario::Scene;
 use crate::verdict::clearance::{Clearance, clearances};
-use crate::verdict::decide::{NextStep, PARTS, clears};
+use crate::verdict::decide::{HALVINGS, NextStep, PARTS, clears, largest};
 use crate::verdict::verification::{Answer, Verification, answered};
 use crate::verdict::witness::{Surroundings, Witness};
 
 /// The lowest part of its speed at which a plan is tried.
 const SLOWEST: f64 = 0.125;
-
-/// Halvings of the interval in which the part of the speed lies.
-const HALVINGS: usize = 5;
 
 /// Decides whether the links of a robot stay clear while its joints stay in a reachable set that
 /// does not depend on what happened before, such as of an arm that follows a plan. `at_speed`
@@ -54,8 +53,8 @@ pub fn verify_plan(
     Ok(Verification { case, answer, clearances, margins, closest, advice, stops, lost, reach })
 }
 
-/// Finds what would decide, or what would make a plan safe: shorter parts of steps, or a lower
-/// speed.
+/// Finds what would decide, or what would make a plan safe: shorter parts of steps, a lower speed,
+/// or smaller sets.
 fn advice(
     around: &Surroundings,
     at_speed: &dyn Fn(f64) -> Option<SuiteReach>,
@@ -71,19 +70,29 @@ fn advice(
     }
     let slower = |part: f64| at_speed(part).is_some_and(|reach| is_clear(&reach, scene.refine));
     if !slower(SLOWEST) {
-        let still = SuiteReach {
-            lower: reach.nominal.clone(),
-            upper: reach.nominal.clone(),
-            ..reach.clone()
+        let with = |factor: f64| is_clear(&scaled(reach, factor), PARTS[0]);
+        return match with(0.0) {
+            true => largest(HALVINGS[0], |factor| Ok::<_, Infallible>(with(factor))).ok(),
+            false => Some(NextStep::Nominal),
         };
-        return (!is_clear(&still, PARTS[0])).then_some(NextStep::Nominal);
     }
     let (mut low, mut high) = (SLOWEST, 1.0);
-    for _ in 0..HALVINGS {
+    for _ in 0..HALVINGS[0] {
         let middle = 0.5 * (low + high);
         if slower(middle) { low = middle } else { high = middle }
     }
     Some(NextStep::Slower(low))
+}
+
+/// Returns a reachable set with its bounds at samples scaled by a factor about their centres.
+fn scaled(reach: &SuiteReach, factor: f64) -> SuiteReach {
+    let bounds = reach.lower.iter().zip(&reach.upper);
+    let scaled = bounds.map(|(low, high)| {
+        let (centre, half) = (low.midpoint(*high), 0.5 * factor * (high - low));
+        (centre - half, centre + half)
+    });
+    let (lower, upper) = scaled.unzip();
+    SuiteReach { lower, upper, ..reach.clone() }
 }
 
 impl Surroundings<'_> {
