@@ -48,8 +48,8 @@ pub enum Error {
     },
     /// A recording or a robot has other joints than the model.
     #[error(
-        "{}: it has the joints {}, but the model has {}; give a recording or a robot of the model's \
-         arm, or make the model with `--robot`, of this robot",
+        "{}: it has the joints {}, but the model has {}; give a recording or a robot of the \
+         model's arm, or make the model with `--robot`, of this robot",
         file.display(), joints.join(", "), of_model.join(", ")
     )]
     OtherJoints {
