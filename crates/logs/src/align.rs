@@ -35,41 +35,72 @@ impl TopicStates {
     ///
     /// Both series have stamps that increase.
     pub(crate) fn at_stamps_of(&self, reference: &[Sample]) -> Option<Moved> {
-        let step = median_step(&self.samples)?;
-        let half = step.min(median_step(reference)?) / 2;
-        let longest = (LONGEST * step as f64) as i64;
+        let times: Vec<i64> = self.samples.iter().map(|sample| sample.time).collect();
+        let stamps: Vec<i64> = reference.iter().map(|sample| sample.time).collect();
+        let places = places(&times, &stamps)?;
         let width = self.values.len() / self.samples.len();
         let (mut samples, mut values) = (vec![], vec![]);
         let mut largest = 0;
-        for stamp in reference.iter().map(|sample| sample.time) {
-            let after = self.samples.partition_point(|sample| sample.time < stamp);
-            let Some(next) = self.samples.get(after) else { break };
-            if next.time == stamp {
-                samples.push(next.clone());
-                values.extend(&self.values[after * width..][..width]);
-                continue;
+        for (stamp, place) in stamps.iter().zip(places) {
+            match place {
+                Place::None => {}
+                Place::At(index) => {
+                    samples.push(self.samples[index].clone());
+                    values.extend(&self.values[index * width..][..width]);
+                }
+                Place::After { index, part, distance } => {
+                    largest = largest.max(distance);
+                    let row = |index: usize| &self.values[index * width..][..width];
+                    let pairs = row(index).iter().zip(row(index + 1));
+                    values.extend(pairs.map(|(a, b)| a + part * (b - a)));
+                    let [last, next] = [index, index + 1].map(|index| &self.samples[index]);
+                    let nearest = if part > 0.5 { next } else { last };
+                    let problems = last.problems.iter().chain(&next.problems).copied().collect();
+                    samples.push(Sample { time: *stamp, problems, ..nearest.clone() });
+                }
             }
-            let Some(before) = after.checked_sub(1) else { continue };
-            let last = &self.samples[before];
-            let [ahead, behind] = [next.time - stamp, stamp - last.time];
-            if ahead.min(behind) > half || ahead + behind > longest {
-                continue;
-            }
-            largest = largest.max(ahead.min(behind));
-            let part = behind as f64 / (ahead + behind) as f64;
-            let [from, to] = [before, after].map(|index| &self.values[index * width..][..width]);
-            values.extend(from.iter().zip(to).map(|(a, b)| a + part * (b - a)));
-            let nearest = if ahead < behind { next } else { last };
-            let problems = last.problems.iter().chain(&next.problems).copied().collect();
-            samples.push(Sample { time: stamp, problems, ..nearest.clone() });
         }
         (largest > 0).then_some((samples, values, largest))
     }
 }
 
-/// Returns the usual time between two samples, ns.
-fn median_step(samples: &[Sample]) -> Option<i64> {
-    let mut steps: Vec<i64> = samples.windows(2).map(|pair| pair[1].time - pair[0].time).collect();
+/// Where a stamp lies among the samples of a series.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Place {
+    /// Further than half a sample from all, or in a gap.
+    None,
+    /// At a sample.
+    At(usize),
+    /// After a sample by a part of the step to the next one; the distance to the nearest, ns.
+    After { index: usize, part: f64, distance: i64 },
+}
+
+/// Returns where each stamp lies among times, both increasing; `None` if there are too few for a
+/// usual step.
+pub(crate) fn places(times: &[i64], stamps: &[i64]) -> Option<Vec<Place>> {
+    let step = median_step(times)?;
+    let half = step.min(median_step(stamps)?) / 2;
+    let longest = (LONGEST * step as f64) as i64;
+    let place = |stamp: &i64| {
+        let after = times.partition_point(|time| time < stamp);
+        let Some(next) = times.get(after) else { return Place::None };
+        if next == stamp {
+            return Place::At(after);
+        }
+        let Some(index) = after.checked_sub(1) else { return Place::None };
+        let [ahead, behind] = [next - stamp, stamp - times[index]];
+        if ahead.min(behind) > half || ahead + behind > longest {
+            return Place::None;
+        }
+        let part = behind as f64 / (ahead + behind) as f64;
+        Place::After { index, part, distance: ahead.min(behind) }
+    };
+    Some(stamps.iter().map(place).collect())
+}
+
+/// Returns the usual time between two stamps, ns.
+pub(crate) fn median_step(times: &[i64]) -> Option<i64> {
+    let mut steps: Vec<i64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.sort_unstable();
     steps.get(steps.len() / 2).copied()
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::loss::Loss;
-use crate::message::{JOINT_STATE, MarkerKind};
+use crate::message::{CONTROLLER_STATE, JOINT_STATE, MarkerKind};
 
 /// A file of a log.
 #[derive(Debug, Clone, Copy)]
@@ -27,6 +27,15 @@ pub(crate) struct Topic {
     pub(crate) encoding: String,
 }
 
+/// Returns the names of topics, with their types.
+pub(crate) fn names_of(topics: &[Topic]) -> Vec<String> {
+    let named = |topic: &Topic| format!("{} ({})", topic.name, topic.kind);
+    let mut names: Vec<String> = topics.iter().map(named).collect();
+    names.sort();
+    names.dedup();
+    names
+}
+
 /// The topics that are read, by the role of their messages.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WantedTopics<'a> {
@@ -36,6 +45,8 @@ pub(crate) struct WantedTopics<'a> {
     pub(crate) found: &'a RefCell<Vec<String>>,
     /// Topic of the markers of runs.
     pub(crate) marker: Option<&'a str>,
+    /// Whether states of controllers are read as well.
+    pub(crate) controllers: bool,
 }
 
 /// The role of a topic's messages.
@@ -44,6 +55,8 @@ pub(crate) enum Role {
     /// Joint states; the number of the topic in [`WantedTopics::joints`], or else in
     /// [`WantedTopics::found`].
     Joints(usize),
+    /// States of a controller; the number of the topic likewise.
+    Controller(usize),
     /// Markers of runs.
     Marker(MarkerKind),
 }
@@ -55,13 +68,16 @@ impl WantedTopics<'_> {
     ///
     /// [`Error::TopicType`] where the topic is read but has messages of another type.
     pub(crate) fn role(&self, path: &Path, topic: &Topic) -> Result<Option<Role>> {
-        let is_any = self.joints.is_empty() && topic.kind == JOINT_STATE;
+        let is_controller = self.controllers && topic.kind == CONTROLLER_STATE;
+        let is_read = is_controller || topic.kind == JOINT_STATE;
+        let is_any = self.joints.is_empty() && is_read;
+        let of = |index| if is_controller { Role::Controller(index) } else { Role::Joints(index) };
         let (role, expected) = if self.marker == Some(topic.name.as_str()) {
             (MarkerKind::of(&topic.kind).map(Role::Marker), MarkerKind::NAMES)
         } else if is_any && topic.encoding == "cdr" {
-            (Some(Role::Joints(self.number_of(&topic.name))), JOINT_STATE)
+            (Some(of(self.number_of(&topic.name))), JOINT_STATE)
         } else if let Some(index) = self.joints.iter().position(|name| *name == topic.name) {
-            ((topic.kind == JOINT_STATE).then_some(Role::Joints(index)), JOINT_STATE)
+            (is_read.then(|| of(index)), JOINT_STATE)
         } else {
             return Ok(None);
         };

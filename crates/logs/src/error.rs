@@ -86,6 +86,25 @@ pub enum Error {
         /// The topics.
         topics: Vec<String>,
     },
+    /// No topics have commanded and actual positions.
+    #[error(
+        "{}: {problem}; commanded and actual positions are in one topic of \
+         control_msgs/msg/JointTrajectoryControllerState, or in two of \
+         sensor_msgs/msg/JointState: name them with --topic STATE COMMAND; {}",
+        path.display(),
+        match &available[..] {
+            [] => "the log has no topics".into(),
+            some => format!("the topics are {}", some.join(", ")),
+        }
+    )]
+    NoCommands {
+        /// The file or folder.
+        path: PathBuf,
+        /// What is missing.
+        problem: String,
+        /// Topics of the log, with their types.
+        available: Vec<String>,
+    },
     /// A topic of joint states has no message.
     #[error("{}: topic {topic} has no message; record it, or name another topic", path.display())]
     NoMessages {
@@ -127,7 +146,7 @@ pub enum Error {
 reachtube_files::kinds!(Error {
     [File | Recordings] => inner,
     Format | Damaged => File,
-    NoTopic | SeveralTopics | TopicType | Setting | Intervals => Setting,
+    NoTopic | NoCommands | SeveralTopics | TopicType | Setting | Intervals => Setting,
     _ => Recordings,
 });
 

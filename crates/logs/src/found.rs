@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use reachtube_recordings::{LogSettings, csv_files, group_files};
+use reachtube_recordings::{LogSettings, group_files, table_files};
 
 use crate::error::{Error, Result};
 use crate::files::logs_in;
@@ -29,7 +29,7 @@ impl LogFiles {
         if logs == [path] {
             return Ok(vec![Self::Container(path.into())]);
         }
-        let mut csv = csv_files(path)?;
+        let mut csv = table_files(path)?;
         let is_inside = |file: &PathBuf| file.parent() == Some(path);
         if csv.iter().chain(&logs).any(is_inside) {
             csv.retain(is_inside);

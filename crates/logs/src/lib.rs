@@ -4,6 +4,7 @@
 //!   by name, and times are the stamps of the headers.
 //! - [`Cutting`] and [`Intervals`] cut logs into runs, and
 //!   [`find_repeats`] groups runs that repeat one motion into test suites.
+//! - [`read_commands`] reads commanded and actual positions, as text with columns.
 //! - [`convert`] checks the runs. [`Recorded::write`] writes them as a data set in the format of
 //!   `docs/recordings.md`; [`Recorded::into_runs`] returns them as a source of recordings.
 //!
@@ -16,6 +17,7 @@ mod bag_file;
 #[cfg(feature = "rosbag")]
 mod bag_state;
 mod cdr;
+mod commands;
 #[cfg(any(feature = "mcap", feature = "rosbag"))]
 mod compressed;
 mod container;
@@ -34,12 +36,14 @@ mod mcap_file;
 mod mcap_records;
 mod merge;
 mod message;
+mod named_series;
 mod recorded;
 mod repeats;
 mod sample;
 mod seconds;
 mod series;
 
+pub use commands::{Commands, read_commands};
 pub use cut::{Cut, Cutting};
 pub use error::Error;
 pub use found::LogFiles;

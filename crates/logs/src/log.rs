@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use reachtube_recordings::{Defect, LogTime, Run};
 
-use crate::container::{Contents, Role, Topic, WantedTopics};
+use crate::container::{Contents, Role, Topic, WantedTopics, names_of};
 use crate::error::{Error, Result};
 use crate::files::{files_of, scan};
 use crate::log_notes::{order_note, series_notes, shift_note, time_note};
@@ -242,8 +242,12 @@ fn check_options(options: &LogOptions) -> Result<()> {
 
 fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
     let found = RefCell::new(vec![]);
-    let wanted =
-        WantedTopics { joints: &options.topics, found: &found, marker: options.marker.as_deref() };
+    let wanted = WantedTopics {
+        joints: &options.topics,
+        found: &found,
+        marker: options.marker.as_deref(),
+        controllers: false,
+    };
     let mut all = Collected {
         series: (0..options.topics.len()).map(TopicStates::new).collect(),
         topics: options.topics.clone(),
@@ -257,7 +261,7 @@ fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
         let (series, markers) = (&mut all.series, &mut all.markers);
         let Contents { topics, notes, losses } =
             scan(&file, wanted, options.recover, &mut |message| match message.role {
-                Role::Joints(topic) => {
+                Role::Joints(topic) | Role::Controller(topic) => {
                     // Without topics that are named, they are met one after another.
                     series.extend((series.len()..=topic).map(TopicStates::new));
                     series[topic].add(message, &options.joints, receipt)
@@ -287,11 +291,7 @@ fn collect(path: &Path, options: &LogOptions) -> Result<Collected> {
 impl Collected {
     /// Returns the names of all topics, with their types.
     fn available(&self) -> Vec<String> {
-        let named = |topic: &Topic| format!("{} ({})", topic.name, topic.kind);
-        let mut available: Vec<String> = self.available.iter().map(named).collect();
-        available.sort();
-        available.dedup();
-        available
+        names_of(&self.available)
     }
 
     /// Keeps the only topic of joint states that names joints of the robot, or the first of all.

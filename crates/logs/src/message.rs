@@ -5,6 +5,9 @@ use crate::cdr::{Cdr, Doubles};
 /// Name of the type of joint states.
 pub(crate) const JOINT_STATE: &str = "sensor_msgs/msg/JointState";
 
+/// Name of the type of what a controller of trajectories commands and measures.
+pub(crate) const CONTROLLER_STATE: &str = "control_msgs/msg/JointTrajectoryControllerState";
+
 /// Nanoseconds in a second.
 pub(crate) const SECOND: i64 = 1_000_000_000;
 
@@ -27,15 +30,60 @@ impl<'a> JointState<'a> {
     /// A clause about the message, which it calls "it".
     pub(crate) fn decode(message: &'a [u8]) -> Result<Self, String> {
         let mut cdr = Cdr::new(message)?;
-        let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
-        if i64::from(nanoseconds) >= SECOND {
-            return Err(format!("its stamp has {nanoseconds} ns, a second or more"));
-        }
-        cdr.string()?; // frame_id
-        let names = cdr.strings()?;
+        let (stamp, names) = stamp_and_names(&mut cdr)?;
         let values = [cdr.doubles()?, cdr.doubles()?, cdr.doubles()?];
         cdr.end()?;
-        Ok(Self { stamp: i64::from(seconds) * SECOND + i64::from(nanoseconds), names, values })
+        Ok(Self { stamp, names, values })
+    }
+}
+
+/// Reads a header, and the names of joints after it.
+fn stamp_and_names<'a>(cdr: &mut Cdr<'a>) -> Result<(i64, Vec<&'a str>), String> {
+    let (seconds, nanoseconds) = (cdr.i32()?, cdr.u32()?);
+    if i64::from(nanoseconds) >= SECOND {
+        return Err(format!("its stamp has {nanoseconds} ns, a second or more"));
+    }
+    cdr.string()?; // frame_id
+    let names = cdr.strings()?;
+    Ok((i64::from(seconds) * SECOND + i64::from(nanoseconds), names))
+}
+
+/// Positions by names, of one kind or two, with numbers still in the message.
+#[derive(Debug)]
+pub(crate) struct Positions<'a> {
+    /// Time of the header, ns.
+    pub(crate) stamp: i64,
+    /// Names of the joints, in the order of the values.
+    pub(crate) names: Vec<&'a str>,
+    /// The positions of a joint state; or the commanded and the measured ones of a controller.
+    pub(crate) values: Vec<Doubles<'a>>,
+}
+
+impl<'a> Positions<'a> {
+    /// Decodes a joint state, or a `control_msgs/msg/JointTrajectoryControllerState`. That begins,
+    /// in all its versions, with header, names, and two points: `desired` and `actual`, or
+    /// `reference` and `feedback`.
+    ///
+    /// # Errors
+    ///
+    /// A clause about the message, which it calls "it".
+    pub(crate) fn decode(message: &'a [u8], is_of_controller: bool) -> Result<Self, String> {
+        if !is_of_controller {
+            let JointState { stamp, names, values: [positions, ..] } = JointState::decode(message)?;
+            return Ok(Self { stamp, names, values: vec![positions] });
+        }
+        let mut cdr = Cdr::new(message)?;
+        let (stamp, names) = stamp_and_names(&mut cdr)?;
+        let mut point = || {
+            let positions = cdr.doubles()?;
+            // Velocities, accelerations, efforts, and the time from the start.
+            for _ in 0..3 {
+                cdr.doubles()?;
+            }
+            (cdr.i32()?, cdr.u32()?);
+            Ok::<_, String>(positions)
+        };
+        Ok(Self { stamp, names, values: vec![point()?, point()?] })
     }
 }
 

@@ -77,7 +77,8 @@ pub use pattern::matching;
 pub use preparation::Preparation;
 pub use reading::{
     ColumnSettings, LogSettings, LogTime, Logged, LoggedOptions, NamedColumns, NamedRun,
-    Understood, Wanted, csv_files, group_files, parse_csv, read_csv, read_logged, read_named,
+    Understood, Wanted, group_files, is_commanded, parse_csv, parse_logged, read_csv, read_logged,
+    read_logged_runs, read_named, table_files,
 };
 pub use refusal::Refusal;
 pub use resample::{EvenSamples, Sample};

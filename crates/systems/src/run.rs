@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 use reachtube_files::hex;
 use reachtube_reach::TimeGrid;
-use reachtube_recordings::{NamedColumns, NamedRun, csv_files, read_named};
+use reachtube_recordings::{NamedColumns, NamedRun, read_named, table_files};
 use sha2::{Digest, Sha256};
 
 use crate::description::SystemKind;
@@ -101,7 +101,7 @@ impl OutputSystem {
     ///
     /// Defects of files; samples that are not where the system has them.
     pub fn read(&self, path: &Path, until: Option<f64>) -> Result<Vec<SystemRun>> {
-        let files = csv_files(path)?;
+        let files = table_files(path)?;
         if files.is_empty() {
             return Err(Error::NoRun { folder: path.into() });
         }

@@ -17,20 +17,14 @@ pub enum Error {
     #[error("no recordings are given; name some with --data")]
     NoData,
     /// A folder has no log.
-    #[error("{}: the folder has no CSV file; give logs or folders of logs", folder.display())]
+    #[error("{}: the folder has no log; give logs or folders of logs", folder.display())]
     NoLog {
         /// The folder.
         folder: PathBuf,
     },
-    /// A log in a format of which commands are not read.
-    #[error(
-        "{}: commanded positions are not read from MCAP and rosbag2 yet; export the log to CSV, \
-         with a column for each commanded and each actual position", path.display()
-    )]
-    Container {
-        /// The log.
-        path: PathBuf,
-    },
+    /// An MCAP or rosbag2 log could not be read.
+    #[error(transparent)]
+    Log(#[from] reachtube_logs::Error),
     /// The recordings are of different joints.
     #[error(
         "{}: it has the joints {}, but {} has {}; give recordings of one arm",
@@ -113,7 +107,7 @@ pub enum Error {
 }
 
 reachtube_files::kinds!(Error {
-    [Recordings | File] => inner,
+    [Recordings | File | Log] => inner,
     NoData | OtherJoints => Setting,
     Program => NoAnswer,
     _ => Recordings,

@@ -4,7 +4,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use reachtube_files::SealedFile;
 use reachtube_finding::{Finding, Severity};
-use reachtube_recordings::ColumnSettings;
+use reachtube_recordings::{ColumnSettings, LogSettings};
 use reachtube_scalar::rounding::{add_up, sub_up};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -103,6 +103,7 @@ pub fn make(recordings: &[TrackedRun], links: Option<&TrackedLinks>) -> Result<M
         left_out: left_out(&motions, &rows, chosen, rows.inside(chosen)?),
         recordings: recorded.collect(),
         columns: ColumnSettings::default(),
+        log: LogSettings::default(),
         sha256: String::new(),
     };
     hold_all(&mut model, &followed);

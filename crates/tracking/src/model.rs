@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use reachtube_files::{FileHead, SealedFile};
-use reachtube_recordings::{Axis, ColumnSettings};
+use reachtube_recordings::{Axis, ColumnSettings, LogSettings};
 use reachtube_scalar::Interval;
 use reachtube_scalar::rounding::{add_down, mul_down};
 use schemars::JsonSchema;
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::basis::{TERMS, enclosed_direction};
 use crate::error::{Error, Result};
-use crate::recording::TrackedRun;
+use crate::recording::{Reading, TrackedRun};
 
 /// What the field `format` of every file says.
 pub(crate) const FORMAT: &str = "reachtube-tracking-model";
@@ -55,6 +55,9 @@ pub struct TrackingModel {
     /// Columns whose names do not tell, with which other logs are read too.
     #[serde(default, skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,
+    /// Topics and times of MCAP and rosbag2 logs, with which others are read too.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub log: LogSettings,
     /// SHA-256 of the rest of the file's content, so that a change is noticed.
     pub sha256: String,
 }
@@ -237,10 +240,18 @@ impl TrackingModel {
         Err(Error::OtherJoints { file: file.into(), joints: joints.to_vec(), of_model })
     }
 
-    /// Returns the model of recordings that were read with some columns.
+    /// Returns the model of recordings that were read with some columns, topics and times.
     #[must_use]
-    pub fn with_columns(self, columns: ColumnSettings) -> Self {
-        Self { columns, ..self }.sealed()
+    pub fn read_with(self, columns: ColumnSettings, log: LogSettings) -> Self {
+        // The joints are the model's own.
+        let log = LogSettings { joints: vec![], ..log };
+        Self { columns, log, ..self }.sealed()
+    }
+
+    /// Returns how other logs are read: as the ones of the model, for the axes of its joints.
+    #[must_use]
+    pub fn reading<'a>(&'a self, axes: &'a [Axis]) -> Reading<'a> {
+        Reading { axes: Some(axes), columns: &self.columns, log: &self.log, until: None }
     }
 
     /// Returns the joints, by which the columns of other logs are found.
@@ -282,8 +293,8 @@ impl SealedFile for TrackingModel {
     }
 }
 
-fn is_default(columns: &ColumnSettings) -> bool {
-    *columns == ColumnSettings::default()
+fn is_default<T: Default + PartialEq>(settings: &T) -> bool {
+    *settings == T::default()
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {

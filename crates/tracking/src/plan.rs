@@ -16,7 +16,7 @@ use crate::recording::{FEWEST_SAMPLES, Plan, Reading};
 pub(crate) const AS_FAST: f64 = 1e-9;
 
 impl Plan {
-    /// Reads the plans at a path, a CSV file or a folder of them, for the joints of a model.
+    /// Reads the plans at a path, a log or a folder of them, for the joints of a model.
     /// Columns of commanded positions count before others, so that a log is a plan too. The notes
     /// say how they were read.
     ///
@@ -29,25 +29,22 @@ impl Plan {
         until: Option<f64>,
     ) -> Result<(Vec<Self>, Vec<String>)> {
         let axes = model.axes();
-        let reading = Reading { axes: Some(&axes), columns: &model.columns, until };
+        let reading = Reading { until, ..model.reading(&axes) };
         let logs = LogFiles::find(path)?;
         if logs.is_empty() {
             return Err(Error::NoLog { folder: path.into() });
         }
         let (mut plans, mut notes) = (Vec::new(), Vec::new());
         for log in logs {
-            let files = match log {
-                LogFiles::Container(path) => return Err(Error::Container { path }),
-                LogFiles::Csv(files) => files,
-            };
-            let (plan, logged) = reading.logged(&files, Wanted::Plan)?;
-            let (file, samples) = (plan.file.clone(), plan.times.len());
-            if samples < FEWEST_SAMPLES {
-                return Err(Error::Short { file, samples });
+            for (plan, logged) in reading.logged(&log, Wanted::Plan)? {
+                let (file, samples) = (plan.file.clone(), plan.times.len());
+                if samples < FEWEST_SAMPLES {
+                    return Err(Error::Short { file, samples });
+                }
+                notes.extend(logged.notes);
+                notes.extend(plan.long_step(model.step));
+                plans.push(plan);
             }
-            notes.extend(logged.notes);
-            notes.extend(plan.long_step(model.step));
-            plans.push(plan);
         }
         Ok((plans, notes))
     }

@@ -2,9 +2,10 @@ use std::ops::{Add, Div, Mul, Sub};
 use std::path::{Path, PathBuf};
 
 use reachtube_files::hex;
-use reachtube_logs::LogFiles;
+use reachtube_logs::{Commands, LogFiles, read_commands};
 use reachtube_recordings::{
-    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, read_logged,
+    Axis, ColumnSettings, GapLimit, LogSettings, Logged, LoggedOptions, Wanted, parse_logged,
+    read_logged_runs,
 };
 use sha2::{Digest, Sha256};
 
@@ -55,11 +56,14 @@ pub struct Reading<'a> {
     pub axes: Option<&'a [Axis]>,
     /// Columns whose names do not tell.
     pub columns: &'a ColumnSettings,
+    /// Topics and times of MCAP and rosbag2 logs, and the names of the joints that are read if no
+    /// robot is given.
+    pub log: &'a LogSettings,
     /// Time after the first sample beyond which samples are not used, s.
     pub until: Option<f64>,
 }
 
-impl Reading<'_> {
+impl<'a> Reading<'a> {
     /// Reads the commanded and actual positions of all logs at some paths, files or folders, but
     /// not of copies. The notes say how they were read.
     ///
@@ -74,16 +78,15 @@ impl Reading<'_> {
                 return Err(Error::NoLog { folder: path.clone() });
             }
             for log in logs {
-                let (recording, own) = match log {
-                    LogFiles::Csv(files) => self.read_csv(&files)?,
-                    LogFiles::Container(path) => return Err(Error::Container { path }),
-                };
-                notes.extend(own);
-                match recordings.iter().find(|other| other.sha256 == recording.sha256) {
-                    None => recordings.push(recording),
-                    Some(other) => {
-                        let [copy, of] = [&recording, other].map(|of| of.file.display());
-                        notes.push(format!("{copy} is a copy of {of}; it is not used"));
+                for (plan, logged) in self.logged(&log, Wanted::Commands)? {
+                    notes.extend(logged.notes.iter().cloned());
+                    let recording = TrackedRun::of(plan, logged);
+                    match recordings.iter().find(|other| other.sha256 == recording.sha256) {
+                        None => recordings.push(recording),
+                        Some(other) => {
+                            let [copy, of] = [&recording, other].map(|of| of.file.display());
+                            notes.push(format!("{copy} is a copy of {of}; it is not used"));
+                        }
                     }
                 }
             }
@@ -92,34 +95,50 @@ impl Reading<'_> {
         Ok((recordings, notes))
     }
 
-    fn read_csv(&self, files: &[PathBuf]) -> Result<(TrackedRun, Vec<String>)> {
-        let (plan, Logged { run, command, notes, .. }) = self.logged(files, Wanted::Commands)?;
-        let Plan { file, joints, units, times, command: actual } = plan;
-        let command = command[..actual.len()].to_vec();
-        let sha256 = run.sha256;
-        Ok((TrackedRun { file, joints, units, times, command, actual, sha256 }, notes))
-    }
-
-    /// Reads a log: its positions, and what was read besides.
-    pub(crate) fn logged(&self, files: &[PathBuf], wanted: Wanted) -> Result<(Plan, Logged)> {
+    /// Reads the recordings of a log: their positions, and what was read besides.
+    pub(crate) fn logged(&self, log: &LogFiles, wanted: Wanted) -> Result<Vec<(Plan, Logged)>> {
         let options = LoggedOptions {
             robot: self.axes,
-            joints: &[],
+            joints: &self.log.joints,
             columns: self.columns,
             gains: false,
             wanted,
             gap_limit: GapLimit::Seconds(f64::INFINITY),
             until: self.until,
         };
-        let logged = read_logged(files, &options).map_err(reachtube_recordings::Error::Defects)?;
+        let refused = reachtube_recordings::Error::Defects;
+        let plan = |(file, logged): (PathBuf, Logged)| (self.plan(file, &logged), logged);
+        let runs = match log {
+            LogFiles::Csv(files) => {
+                let runs = read_logged_runs(files, &options).map_err(refused)?;
+                let name = |run: Option<String>| match run {
+                    Some(run) => format!("{}:{run}", files[0].display()).into(),
+                    None => files[0].clone(),
+                };
+                runs.into_iter().map(|(run, logged)| (name(run), logged)).collect()
+            }
+            LogFiles::Container(path) => {
+                let axes = self.axes.unwrap_or_default().iter();
+                let joints: Vec<String> = axes.map(|axis| axis.name.clone()).collect();
+                let Commands { text, notes } = read_commands(path, self.log, &joints)?;
+                let mut logged = parse_logged(path, text, &options).map_err(refused)?;
+                logged.notes.splice(..0, notes);
+                vec![(path.clone(), logged)]
+            }
+        };
+        Ok(runs.into_iter().map(plan).collect())
+    }
+
+    /// Returns the positions of a recording.
+    fn plan(&self, file: PathBuf, logged: &Logged) -> Plan {
         let run = &logged.run;
         let of_columns = logged.understood.as_ref().map_or(&[][..], |of| &of.joints);
         let of_columns = of_columns.iter().map(|name| match name.parse::<usize>() {
             Ok(number) => format!("joint_{number}"),
             Err(_) => name.clone(),
         });
-        let plan = Plan {
-            file: files[0].clone(),
+        Plan {
+            file,
             joints: match self.axes {
                 Some(axes) => axes.iter().map(|axis| axis.name.clone()).collect(),
                 None => of_columns.collect(),
@@ -130,8 +149,7 @@ impl Reading<'_> {
             },
             times: run.times.clone(),
             command: (0..run.len()).flat_map(|k| run.q(k).to_vec()).collect(),
-        };
-        Ok((plan, logged))
+        }
     }
 }
 
@@ -156,6 +174,13 @@ pub(crate) fn check(recordings: &[TrackedRun]) -> Result<()> {
 }
 
 impl TrackedRun {
+    /// Returns a recording of actual positions, in place of a plan's, and what was read besides.
+    fn of(actual: Plan, logged: Logged) -> Self {
+        let Plan { file, joints, units, times, command: actual } = actual;
+        let command = logged.command[..actual.len()].to_vec();
+        Self { file, joints, units, times, command, actual, sha256: logged.run.sha256 }
+    }
+
     /// Returns a recording of numbers: times K in s, commanded and actual positions K x n.
     #[must_use]
     pub fn of_numbers(

@@ -48,7 +48,7 @@ pub(crate) struct Arguments {
     pub robot: Option<String>,
     #[command(flatten)]
     pub lock: LockArguments,
-    /// Logs: CSV files, MCAP, rosbag2, or folders of them
+    /// Logs: CSV and Parquet files, MCAP, rosbag2, or folders of them
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub data: Vec<PathBuf>,
     /// Meaning of the recorded torques
@@ -96,16 +96,16 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 /// Makes a model of commanded and actual positions, without torques.
 fn under_controller(args: &Arguments, json: bool) -> Result<Outcome> {
     let Arguments { horizon, held_out, gains, fit, log, .. } = args;
-    let is_log = log.settings() != LogSettings::default();
     let is_made = !(held_out.is_empty() && gains.is_empty() && fit.is_empty());
-    if horizon.is_some() || is_made || is_log {
+    if horizon.is_some() || is_made {
         return Err(Error::setting(NO_TORQUE));
     }
     let of = TrackingArguments {
         data: &args.data,
         robot: args.robot.as_deref(),
         lock: &args.lock.lock,
-        columns: args.log.columns.clone().unwrap_or_default(),
+        columns: log.columns.clone().unwrap_or_default(),
+        log: log.settings(),
         out: &args.out,
     };
     tracking::model(&of, json)
@@ -216,7 +216,8 @@ fn choices(args: &Arguments) -> Result<Choices> {
         held_out: (!args.held_out.is_empty()).then(|| args.held_out.clone()),
         gains: args.gains.clone(),
         lock: args.lock.lock.iter().map(ToString::to_string).collect(),
-        columns: args.log.columns.clone().unwrap_or_default(),
+        columns: log.columns.clone().unwrap_or_default(),
+        log: log.settings(),
         log: args.log.settings(),
         fit: (!args.fit.is_empty()).then(|| args.fit.clone()),
         ..Choices::default()

@@ -6,7 +6,7 @@ use reachtube::axes;
 use reachtube::conform::SuiteReach;
 use reachtube::finding::Table;
 use reachtube::pipeline::{NOT_USEFUL, body_of, followed, robot_of};
-use reachtube::recordings::ColumnSettings;
+use reachtube::recordings::{ColumnSettings, LogSettings};
 use reachtube::robot::{Lock, Robot};
 use reachtube::scalar::Interval;
 use reachtube::scalar::rounding::sub_up;
@@ -54,6 +54,8 @@ pub(crate) struct TrackingArguments<'a> {
     pub lock: &'a [Lock],
     /// Columns whose names do not tell.
     pub columns: ColumnSettings,
+    /// Topics, joints and times of logs.
+    pub log: LogSettings,
     /// The folder of the result.
     pub out: &'a Path,
 }
@@ -69,12 +71,13 @@ pub(crate) fn model(args: &TrackingArguments, json: bool) -> Result<Outcome> {
         body.as_ref().map_or(vec![], |body| body.ways_of_links(from, shift))
     };
     let links = body.as_ref().map(|body| TrackedLinks { joints: body.links(), ways: &ways });
-    let reading = Reading { axes: axes.as_deref(), columns: &args.columns, until: None };
+    let reading =
+        Reading { axes: axes.as_deref(), columns: &args.columns, log: &args.log, until: None };
     let (recordings, notes) = reading.read(args.data)?;
     output::notes(&notes);
     let bar = Progress::of("making a model");
     let mut made = make(&recordings, links.as_ref())?;
-    made.model = made.model.with_columns(args.columns.clone());
+    made.model = made.model.read_with(args.columns.clone(), args.log.clone());
     drop(bar);
     write::atomically(&path, |out| out.write_all(made.model.to_json().as_bytes()))?;
     let outcome = match (made.model.verified, made.is_useful()) {
@@ -129,7 +132,7 @@ pub(crate) fn check(args: &ModelArguments, json: bool) -> Result<Outcome> {
     }
     let model = TrackingModel::open(model)?;
     let axes = model.axes();
-    let reading = Reading { axes: Some(&axes), columns: &model.columns, until: data.until };
+    let reading = Reading { until: data.until, ..model.reading(&axes) };
     let (recordings, notes) = reading.read(&[PathBuf::from(&data.data)])?;
     output::notes(&notes);
     let check = model.check(&recordings)?;

@@ -1,5 +1,6 @@
 //! Tests of logs: reading, cutting, refusals, damage and hostile input.
 
+mod commands;
 mod cutting;
 mod damage;
 mod inspect;

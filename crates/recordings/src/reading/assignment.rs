@@ -1,8 +1,9 @@
 //! Which columns of a recording's files are its time, positions, velocities and torques.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::dialect::Dialect;
+use super::files::quantity_of_file;
 use super::joints::{Column, Joints, Mismatch, by_pattern, listed};
 use super::name::{ColumnName, Origin, Quantity};
 use super::options::{LoggedOptions, Wanted};
@@ -73,12 +74,6 @@ fn columns(files: &[PathBuf], dialects: &[Dialect]) -> Vec<Column> {
     columns
 }
 
-/// Returns the quantity that a file's name speaks of, other than the time.
-pub(super) fn quantity_of_file(file: &Path) -> Option<Quantity> {
-    let stem = file.file_stem()?.to_string_lossy();
-    ColumnName::new(&stem).quantity.filter(|q| !matches!(q, Quantity::Time | Quantity::Other))
-}
-
 type Found<T> = Result<T, Box<Defect>>;
 
 struct Finder<'a> {
@@ -95,19 +90,20 @@ impl Finder<'_> {
         let mut notes = Vec::new();
         let joints = self.joints()?;
         let (q, others) = self.positions(&joints)?;
-        if self.options.robot.is_some() && !others.is_empty() {
-            notes.push(format!(
-                "the robot has no joint for {}, which are not used",
-                listed(others.iter().map(|column| column.text.as_str()))
-            ));
+        if !others.is_empty() {
+            let why = match self.options.robot {
+                Some(_) => "the robot has no joint for",
+                None => "no commanded joint was chosen for",
+            };
+            let others = listed(others.iter().map(|column| column.text.as_str()));
+            notes.push(format!("{why} {others}, which are not used"));
         }
         let find = |quantity, origins: &[Origin]| self.find(quantity, origins, &joints);
         let measured = [Origin::Measured, Origin::Unstated];
         let qd = find(Quantity::Velocity, &measured)?.map(|(columns, _)| columns);
         let temperatures = find(Quantity::Temperature, &measured).ok().flatten();
         let temperatures = temperatures.map(|(columns, _)| columns);
-        let is_command = self.options.wanted == Wanted::Commands;
-        let command = is_command.then(|| self.commands(&joints)).transpose()?;
+        let command = self.wants_commands().then(|| self.commands(&joints)).transpose()?;
         let tau = if self.options.wanted.has_torques() { self.torques(&joints)? } else { None };
         let mut out = Assignment {
             time,
@@ -122,6 +118,10 @@ impl Finder<'_> {
         };
         out.unused = self.unused(&out);
         Ok(out)
+    }
+
+    fn wants_commands(&self) -> bool {
+        self.options.wanted == Wanted::Commands
     }
 
     /// Returns the columns of a quantity from the first of some origins that has any.
@@ -211,9 +211,10 @@ impl Finder<'_> {
             [] => column.text.clone(),
             _ => column.name.joint.join("_"),
         };
-        let names = found.iter().map(name).collect::<Vec<_>>();
-        let places = (0..names.len()).collect();
-        Ok(Joints { names, places, first })
+        let mut joints = Joints { names: found.iter().map(name).collect(), places: vec![], first };
+        let commands = self.of(Quantity::Position, Origin::Target);
+        joints.choose(self.options.joints, Some(&commands[..]).filter(|_| self.wants_commands()));
+        Ok(joints)
     }
 
     fn positions(&self, joints: &Joints) -> Found<(Vec<Column>, Vec<Column>)> {

@@ -5,6 +5,7 @@ use std::path::Path;
 use reachtube_files::hex;
 use sha2::{Digest, Sha256};
 
+use super::content::content;
 use super::dialect::Dialect;
 use super::name::Quantity;
 use super::table::{ReadColumn, Table};
@@ -27,21 +28,14 @@ const JOINT_TEMPERATURES: [f64; 2] = [-100.0, 250.0];
 /// Largest number of joints of a recording; a header with more is a mistake.
 const MOST_JOINTS: usize = 100;
 
-/// Reads the recording in the CSV file `path`.
+/// Reads the recording in the file `path`.
 ///
 /// # Errors
 ///
 /// Every defect of the file, with its line and joint.
 pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> {
-    parse_csv(path, &content(path)?, options)
-}
-
-pub(super) fn content(path: &Path) -> Result<Vec<u8>, Vec<Defect>> {
-    reachtube_files::bytes(path).map_err(|source| {
-        let problem = format!("cannot read: {source}");
-        let defect = Defect::new(path, None, problem, "check the path and its permissions");
-        vec![defect.of_kind(DefectKind::File)]
-    })
+    let (text, digest) = content(path)?;
+    parse(path, &text, digest, options)
 }
 
 /// Reads the recording in the content of a CSV file, which messages call `name`.
@@ -60,9 +54,18 @@ pub(super) fn content(path: &Path) -> Result<Vec<u8>, Vec<Defect>> {
 /// assert_eq!((run.joints, run.len()), (1, 2));
 /// ```
 pub fn parse_csv(name: &Path, content: &[u8], options: &ReadOptions) -> Result<Run, Vec<Defect>> {
-    let dialect = Dialect::of(name, content).map_err(|defect| vec![*defect])?;
-    let (mut run, _) = recording(name, content, &dialect, (&[], None), options)?;
-    run.sha256 = hex(&Sha256::digest(content));
+    parse(name, content, Sha256::new_with_prefix(content), options)
+}
+
+fn parse(
+    name: &Path,
+    text: &[u8],
+    digest: Sha256,
+    options: &ReadOptions,
+) -> Result<Run, Vec<Defect>> {
+    let dialect = Dialect::of(name, text).map_err(|defect| vec![*defect])?;
+    let (mut run, _) = recording(name, text, &dialect, (&[], None), options)?;
+    run.sha256 = hex(&digest.finalize());
     run.truncate(options.until);
     Ok(run)
 }

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::assignment::quantity_of_file;
 use super::canonical::is_recording;
 use super::dialect::Dialect;
 use super::name::{ColumnName, Quantity};
@@ -19,13 +18,14 @@ fn head(file: &Path) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Returns the file itself, or the CSV files of a folder except `runs.csv`, sorted by name. If the
-/// folder has none, returns the CSV files of its subfolders.
+/// Returns the file itself, or the CSV and Parquet files of a folder except `runs.csv`, sorted by
+/// name. If the folder has none, returns the files of its subfolders. The recordings of a LeRobot
+/// folder are in its subfolder `data`.
 ///
 /// # Errors
 ///
 /// [`reachtube_files::Error::Read`] for a path that cannot be read.
-pub fn csv_files(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Error> {
+pub fn table_files(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Error> {
     let unreadable = |source| reachtube_files::Error::Read {
         path: path.to_path_buf(),
         source,
@@ -34,16 +34,8 @@ pub fn csv_files(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Error> {
     if !path.metadata().map_err(unreadable)?.is_dir() {
         return Ok(vec![path.to_path_buf()]);
     }
-    let recordings = |folder: &Path| -> std::io::Result<[Vec<PathBuf>; 2]> {
-        let entries = std::fs::read_dir(folder)?.flatten().map(|entry| entry.path());
-        let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
-        let is_recording = |path: &PathBuf| {
-            path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
-                && path.file_name().is_some_and(|f| f != "runs.csv")
-        };
-        Ok([files.into_iter().filter(is_recording).collect(), folders])
-    };
-    let [mut files, folders] = recordings(path).map_err(unreadable)?;
+    let data = Some(path.join("data")).filter(|_| path.join("meta/info.json").is_file());
+    let [mut files, folders] = recordings(data.as_deref().unwrap_or(path)).map_err(unreadable)?;
     if files.is_empty() {
         for folder in folders {
             let [below, _] = recordings(&folder).map_err(unreadable)?;
@@ -52,6 +44,20 @@ pub fn csv_files(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Error> {
     }
     files.sort();
     Ok(files)
+}
+
+/// Returns the files of recordings in a folder, and its folders.
+fn recordings(folder: &Path) -> std::io::Result<[Vec<PathBuf>; 2]> {
+    let entries = std::fs::read_dir(folder)?.flatten().map(|entry| entry.path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let has_ending = |path: &PathBuf| {
+        let is =
+            |ending: &str| path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
+        is("csv") || is("parquet")
+    };
+    let is_recording =
+        |path: &PathBuf| has_ending(path) && path.file_name().is_some_and(|f| f != "runs.csv");
+    Ok([files.into_iter().filter(is_recording).collect(), folders])
 }
 
 /// Groups the files of a folder to recordings: files with one quantity each, such as `position.csv`
@@ -83,6 +89,12 @@ pub fn group_files(files: Vec<PathBuf>) -> Vec<Vec<PathBuf>> {
         group.sort_by_key(|file| only_quantity(file).map(|(quantity, _)| quantity));
     }
     groups
+}
+
+/// Returns the quantity that a file's name speaks of, other than the time.
+pub(super) fn quantity_of_file(file: &Path) -> Option<Quantity> {
+    let stem = file.file_stem()?.to_string_lossy();
+    ColumnName::new(&stem).quantity.filter(|q| !matches!(q, Quantity::Time | Quantity::Other))
 }
 
 /// Returns the one quantity of a file, and the rest of its name; `None` for a file with several.

@@ -53,6 +53,18 @@ impl Joints {
         Some(Self { names, places, first: options.columns.first })
     }
 
+    /// Keeps the joints that are named, if there are names, or else the joints of the columns with
+    /// commands, if these are given.
+    pub(super) fn choose(&mut self, names: &[String], commands: Option<&[Column]>) {
+        let commanded = commands.map(|columns| self.matched(columns));
+        if !names.is_empty() {
+            self.names = names.to_vec();
+        } else if let Some(Err(Mismatch::Missing(missing))) = commanded {
+            missing.iter().rev().for_each(|joint| drop(self.names.remove(*joint)));
+        }
+        self.places = (0..self.names.len()).collect();
+    }
+
     /// Returns one of the columns for each joint: by the joints' names, or else by numbers.
     pub(super) fn matched(&self, columns: &[Column]) -> Result<Matched, Mismatch> {
         let named = self.by_name(columns);

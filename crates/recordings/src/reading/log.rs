@@ -1,20 +1,15 @@
-//! One recording of a log: its files, read, joined and brought to the units of reachtube.
+//! One recording of a log: the numbers of its files, joined and brought to the units of reachtube.
 
 use std::path::PathBuf;
 
-use reachtube_files::hex;
-use sha2::{Digest, Sha256};
-
-use super::assignment::{Assignment, TorqueKind, assign};
-use super::canonical::{content, is_recording, recording};
+use super::assignment::{Assignment, TorqueKind};
+use super::canonical::recording;
 use super::command::commanded;
 use super::dialect::Dialect;
-use super::even_times::with_times;
 use super::joints::{Column, Joints, listed};
 use super::name::Quantity;
-use super::options::{LoggedOptions, Wanted};
+use super::options::LoggedOptions;
 use super::recognise::{Numbers, Units, recognise};
-use super::settings::ColumnSettings;
 use super::table::{ReadColumn, Table};
 use super::understood::Understood;
 use crate::defect::{Defect, DefectKind};
@@ -32,7 +27,7 @@ const POSSIBLE: [f64; 2] = [-1e9, 1e9];
 pub struct Logged {
     /// The recording, with columns in the order of the robot's joints. Motor currents stand in
     /// place of its torques where gains were announced. Torques are 0 where a log has none, which
-    /// [`Wanted::Torques`] does not accept.
+    /// [`Wanted::Torques`](super::Wanted::Torques) does not accept.
     pub run: Run,
     /// Commanded positions, row-major K x n, rad; empty unless they are wanted.
     pub command: Vec<f64>,
@@ -43,81 +38,8 @@ pub struct Logged {
     pub notes: Vec<String>,
 }
 
-/// Reads a recording from the files of a log: one with all quantities, or one for each quantity
-/// with the same times.
-///
-/// A file with the header `t,q1..qn,qd1..qdn,tau1..taun` is read as it is, unless
-/// [`LoggedOptions::columns`] say otherwise. In others, columns and units are recognised.
-///
-/// # Errors
-///
-/// Every defect, with file, line, column and remedy.
-///
-/// # Panics
-///
-/// Panics without a file.
-///
-/// # Examples
-///
-/// ```
-/// use reachtube_recordings::{ColumnSettings, GapLimit, LoggedOptions, Wanted, read_logged};
-///
-/// let folder = tempfile::tempdir()?;
-/// let path = folder.path().join("log.csv");
-/// let rows = "0 0.10 1.0 2.0\n4 0.104 1.0 2.0\n8 0.108 1.0 2.0\n";
-/// std::fs::write(&path, format!("time_ms actual_q_0 actual_qd_0 target_moment_0\n{rows}"))?;
-///
-/// let columns = ColumnSettings::default();
-/// let options = LoggedOptions {
-///     robot: None,
-///     joints: &[],
-///     columns: &columns,
-///     gains: false,
-///     wanted: Wanted::Torques,
-///     gap_limit: GapLimit::Usual,
-///     until: None,
-/// };
-/// let logged = read_logged(&[path], &options).unwrap();
-/// assert_eq!(logged.run.times, [0.0, 0.004, 0.008]);
-/// # Ok::<(), std::io::Error>(())
-/// ```
-pub fn read_logged(files: &[PathBuf], options: &LoggedOptions) -> Result<Logged, Vec<Defect>> {
-    let mut contents: Vec<Vec<u8>> =
-        files.iter().map(|file| content(file)).collect::<Result<_, _>>()?;
-    let mut digest = Sha256::new();
-    contents.iter().for_each(|bytes| digest.update(bytes));
-    let mut dialects = dialects(files, &contents)?;
-    if let Some(rate) = options.columns.rate {
-        let timed = contents.iter().zip(&dialects);
-        contents = timed.map(|(bytes, dialect)| with_times(bytes, dialect, rate)).collect();
-        dialects = self::dialects(files, &contents)?;
-    }
-    let mut logged = match &dialects[..] {
-        [only]
-            if *options.columns == ColumnSettings::default()
-                && is_recording(only)
-                && options.wanted != Wanted::Commands =>
-        {
-            as_it_is(files, &contents[0], only, options)?
-        }
-        _ => {
-            let assignment = assign(files, &dialects, options)?;
-            let log = Log { files, dialects: &dialects, assignment: &assignment, options };
-            log.logged(&contents)?
-        }
-    };
-    logged.run.sha256 = hex(&digest.finalize());
-    logged.run.truncate(options.until);
-    Ok(logged)
-}
-
-fn dialects(files: &[PathBuf], contents: &[Vec<u8>]) -> Result<Vec<Dialect>, Vec<Defect>> {
-    let all = files.iter().zip(contents).map(|(file, bytes)| Dialect::of(file, bytes));
-    all.collect::<Result<_, _>>().map_err(|defect| vec![*defect])
-}
-
 /// Reads a file in the format of recordings, and takes whole turns out.
-fn as_it_is(
+pub(super) fn as_it_is(
     files: &[PathBuf],
     content: &[u8],
     dialect: &Dialect,
@@ -169,16 +91,16 @@ fn revolute(options: &LoggedOptions, joints: usize) -> Vec<bool> {
 }
 
 /// A log whose columns are known.
-struct Log<'a> {
-    files: &'a [PathBuf],
-    dialects: &'a [Dialect],
-    assignment: &'a Assignment,
-    options: &'a LoggedOptions<'a>,
+pub(super) struct Log<'a> {
+    pub files: &'a [PathBuf],
+    pub dialects: &'a [Dialect],
+    pub assignment: &'a Assignment,
+    pub options: &'a LoggedOptions<'a>,
 }
 
 impl Log<'_> {
     /// Reads the numbers, brings them to s, rad and rad/s, and notes the changes.
-    fn logged(&self, contents: &[Vec<u8>]) -> Result<Logged, Vec<Defect>> {
+    pub(super) fn logged(&self, contents: &[Vec<u8>]) -> Result<Logged, Vec<Defect>> {
         let Self { files, assignment, options, .. } = *self;
         let tables = self.tables(contents)?;
         let values = |column: &Column| tables[column.file].values(&[column.at]);

@@ -9,6 +9,7 @@
 mod assignment;
 mod canonical;
 mod command;
+mod content;
 mod dialect;
 mod digits;
 mod even_times;
@@ -20,8 +21,12 @@ mod name;
 mod named;
 mod number;
 mod options;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod read;
 mod recognise;
 mod row;
+mod runs;
 mod settings;
 mod table;
 mod time_column;
@@ -29,10 +34,12 @@ mod understood;
 mod unit;
 
 pub use canonical::{parse_csv, read_csv};
-pub use files::{csv_files, group_files};
-pub use log::{Logged, read_logged};
+pub use files::{group_files, table_files};
+pub use log::Logged;
 pub use log_settings::{LogSettings, LogTime};
+pub use name::is_commanded;
 pub use named::{NamedColumns, NamedRun, read_named};
 pub use options::{LoggedOptions, Wanted};
+pub use read::{parse_logged, read_logged, read_logged_runs};
 pub use settings::ColumnSettings;
 pub use understood::Understood;

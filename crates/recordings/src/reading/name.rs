@@ -62,7 +62,7 @@ impl ColumnName {
         let words = words(name);
         let quantities: Vec<Quantity> = quantities(&words);
         let strongest = quantities.iter().copied().max_by_key(|quantity| rank(*quantity));
-        let mut quantity = strongest;
+        let mut quantity = strongest.or_else(|| of_lerobot(&words));
         let mut origins: Vec<Origin> = words.iter().filter_map(|word| origin(word)).collect();
         // "current" beside another quantity means "now".
         if quantities.contains(&Quantity::Current) && quantity != Some(Quantity::Current) {
@@ -99,6 +99,12 @@ impl ColumnName {
     pub(super) fn contains(&self, other: &[String]) -> bool {
         !other.is_empty() && self.words.windows(other.len()).any(|part| part == other)
     }
+}
+
+/// Returns whether a name, of a column or a topic, speaks of commands in place of measurements.
+#[must_use]
+pub fn is_commanded(name: &str) -> bool {
+    ColumnName::new(name).origin == Origin::Target
 }
 
 fn is_number(word: &str) -> bool {
@@ -167,6 +173,13 @@ fn quantity(word: &str) -> Option<Quantity> {
     })
 }
 
+/// Returns the quantity of LeRobot's names, which have no word for it.
+fn of_lerobot(words: &[String]) -> Option<Quantity> {
+    let starts = |with: &[&str]| words.iter().zip(with).filter(|(a, b)| a == b).count();
+    let is_joint = starts(&["action"]) == 1 || starts(&["observation", "state"]) == 2;
+    is_joint.then_some(Quantity::Position)
+}
+
 /// Returns how strongly a word stands for its quantity against the others of a name.
 fn rank(quantity: Quantity) -> u8 {
     match quantity {
@@ -182,11 +195,10 @@ fn rank(quantity: Quantity) -> u8 {
 
 fn origin(word: &str) -> Option<Origin> {
     match word {
-        "actual" | "act" | "measured" | "meas" | "msr" | "fbk" | "feedback" | "real" => {
-            Some(Origin::Measured)
-        }
-        "target" | "desired" | "des" | "cmd" | "command" | "commanded" | "ref" | "reference"
-        | "setpoint" | "goal" | "d" => Some(Origin::Target),
+        "actual" | "act" | "measured" | "meas" | "msr" | "fbk" | "feedback" | "real"
+        | "observation" => Some(Origin::Measured),
+        "target" | "desired" | "des" | "cmd" | "cmptd" | "command" | "commands" | "commanded"
+        | "ref" | "reference" | "setpoint" | "goal" | "action" | "d" => Some(Origin::Target),
         _ => None,
     }
 }
@@ -242,6 +254,12 @@ mod tests {
             ("timestamp", Some(Time), Unstated, None),
             ("target_qdd_1", Some(Other), Target, Some(1)),
             ("safety_mode", None, Unstated, None),
+            ("action_kLeftElbow", Some(Position), Target, None),
+            ("action_shoulder_pan.pos", Some(Position), Target, None),
+            ("observation.state_6", Some(Position), Measured, Some(6)),
+            ("observation.velocity_2", Some(Velocity), Measured, Some(2)),
+            ("observation.environment_state_1", None, Measured, Some(1)),
+            ("axis3_cmptd_pos", Some(Position), Target, Some(3)),
         ];
         for (text, quantity, origin, number) in cases {
             let name = ColumnName::new(text);

@@ -3,21 +3,19 @@
 use std::path::Path;
 
 use reachtube_files::hex;
-use sha2::{Digest, Sha256};
+use sha2::Digest;
 
-use super::canonical::content;
+use super::content::content;
 use super::dialect::Dialect;
 use super::even_times::with_times;
 use super::joints::listed;
 use super::name::{ColumnName, Quantity};
+use super::runs::run_column;
 use super::table::{ReadColumn, Table};
 use super::time_column::TimeColumns;
 use super::unit::TimeUnit;
 use crate::defect::{Defect, DefectKind};
 use crate::text::quoted;
-
-/// The name of the column that tells the runs of a file apart.
-const RUN: &str = "run";
 
 /// The columns that are read of a file.
 #[derive(Debug, Clone, Copy)]
@@ -33,7 +31,7 @@ pub struct NamedColumns<'a> {
 /// A run: samples of named columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedRun {
-    /// The number in the column `run`, if the file has that.
+    /// The number in the column of the runs, if the file has that.
     pub number: Option<f64>,
     /// Line of its first sample in the file, from 1.
     pub line: u64,
@@ -45,8 +43,9 @@ pub struct NamedRun {
     pub optional: Vec<f64>,
 }
 
-/// Reads the runs of a text file, and the SHA-256 of its content. A file with a column `run` has a
-/// run for each of its numbers, row after row; any other file is one run. The time is the column
+/// Reads the runs of a file, and the SHA-256 of its content. A file with a column `run`, `episode`
+/// or `episode_index` has a run for each of its numbers, row after row; any other file is one run.
+/// The time is the column
 /// `t`, `time` or the like, in s unless its name has another unit.
 ///
 /// # Errors
@@ -76,10 +75,10 @@ pub fn read_named(
     path: &Path,
     columns: &NamedColumns<'_>,
 ) -> Result<(Vec<NamedRun>, String), Vec<Defect>> {
-    let mut bytes = content(path)?;
-    let sha256 = hex(&Sha256::digest(&bytes));
+    let (mut bytes, digest) = content(path)?;
+    let sha256 = hex(&digest.finalize());
     let own = dialect(path, &bytes)?;
-    let run = position(&own, RUN);
+    let run = run_column(&own);
     let time = own.names.iter().position(|text| is_time(text)).filter(|at| run != Some(*at));
     // Rows of several runs, and rows without a time, are counted.
     let is_counted = run.is_some() || time.is_none();

@@ -28,6 +28,7 @@ pub struct LoggedOptions<'a> {
     /// are its joints.
     pub robot: Option<&'a [Axis]>,
     /// Names of the robot's joints in the order of numbered columns; empty for the robot's order.
+    /// Without a robot, the joints that are read, in their order; empty for all.
     pub joints: &'a [String],
     /// Names and units of columns that the user gives.
     pub columns: &'a ColumnSettings,

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use reachtube_recordings::{
-    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, csv_files, group_files,
-    read_logged,
+    Axis, ColumnSettings, GapLimit, Logged, LoggedOptions, Wanted, group_files, read_logged,
+    table_files,
 };
 use tempfile::TempDir;
 
@@ -209,7 +209,7 @@ fn files_of_one_quantity_are_joined() {
     quantity("effort", |joint, _| joint as f64 + 1.0);
     quantity("velocity", |joint, t| motion(joint, t)[1]);
     quantity("position", |joint, t| motion(joint, t)[0]);
-    let groups = group_files(csv_files(folder.path()).unwrap());
+    let groups = group_files(table_files(folder.path()).unwrap());
     let [files] = &groups[..] else { panic!("{groups:?}") };
     assert!(files[0].ends_with("position.csv"), "{files:?}");
     let columns = ColumnSettings::default();

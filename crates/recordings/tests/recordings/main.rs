@@ -2,4 +2,6 @@
 
 mod logged;
 mod order_and_temperature;
+#[cfg(feature = "parquet")]
+mod parquet_files;
 mod round_trip;

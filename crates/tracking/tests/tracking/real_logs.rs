@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use reachtube_recordings::ColumnSettings;
+use reachtube_recordings::{ColumnSettings, LogSettings};
 use reachtube_tracking::Reading;
 
 use crate::common::made;
@@ -18,8 +18,8 @@ fn a_ur3e_follows_its_command_within_a_third_of_a_milliradian() {
         "wave_torqueData_100v_40a.csv",
         "wave_currentData_100v_40a.head.csv",
     ];
-    let columns = ColumnSettings::default();
-    let reading = Reading { axes: None, columns: &columns, until: None };
+    let (columns, log) = (ColumnSettings::default(), LogSettings::default());
+    let reading = Reading { axes: None, columns: &columns, log: &log, until: None };
     let (recordings, _) = reading.read(&names.map(|name| logs.join(name))).unwrap();
     let made = made(&recordings);
     let model = &made.model;

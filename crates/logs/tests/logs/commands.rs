@@ -1,0 +1,183 @@
+//! Commanded and actual positions of MCAP and rosbag2 logs.
+
+use std::path::Path;
+
+use reachtube_logs::{Commands, Error, read_commands};
+use reachtube_recordings::{
+    ColumnSettings, GapLimit, LogSettings, LogTime, Logged, LoggedOptions, Wanted, parse_logged,
+};
+
+use crate::support::*;
+
+const CONTROLLER: &str = "control_msgs/msg/JointTrajectoryControllerState";
+const START: i64 = 1_700_000_000 * SECOND;
+
+/// Encodes the state of a controller with commanded and actual positions, and what follows them in
+/// the newer versions of the message.
+fn controller_state(stamp: i64, names: &[&str], positions: [&[f64]; 2]) -> Vec<u8> {
+    let mut out = Encoder::new(false)
+        .u32((stamp / SECOND) as u32)
+        .u32((stamp % SECOND) as u32)
+        .string("")
+        .u32(names.len() as u32);
+    for name in names {
+        out = out.string(name);
+    }
+    for positions in positions.into_iter().chain([&[][..], &[]]) {
+        out = out.doubles(positions).doubles(&[0.5]).doubles(&[]).doubles(&[]).u32(7).u32(9);
+    }
+    out.u32(0).end()
+}
+
+/// Returns states of a controller of the joints a and b, which follow `a = k`, `b = -k` in
+/// milliradians, and lag by 1 mrad.
+fn states(topic: &str, count: i64) -> Vec<Message> {
+    let message = |k: i64| {
+        let stamp = START + k * 10_000_000;
+        let [a, b] = [1e-3, -1e-3].map(|rate| rate * k as f64);
+        let turned = k % 2 == 1;
+        let data = match turned {
+            false => controller_state(stamp, &["a", "b"], [&[a, b], &[a - 1e-3, b + 1e-3]]),
+            true => controller_state(stamp, &["b", "a"], [&[b, a], &[b + 1e-3, a - 1e-3]]),
+        };
+        Message::new(topic, CONTROLLER, stamp + 500_000, data)
+    };
+    (0..count).map(message).collect()
+}
+
+/// Returns joint states with a position of the joint a.
+fn positions(topic: &str, samples: &[(i64, f64)]) -> Vec<Message> {
+    let message = |(stamp, a): &(i64, f64)| {
+        let state = State::new(START + stamp, &["a"], [&[*a], &[], &[]]);
+        Message::new(topic, JOINT_STATE, state.stamp, state.encode(false))
+    };
+    samples.iter().map(message).collect()
+}
+
+fn parsed(path: &Path, commands: Commands) -> Logged {
+    let columns = ColumnSettings::default();
+    let options = LoggedOptions {
+        robot: None,
+        joints: &[],
+        columns: &columns,
+        gains: false,
+        wanted: Wanted::Commands,
+        gap_limit: GapLimit::Seconds(f64::INFINITY),
+        until: None,
+    };
+    parse_logged(path, commands.text, &options).unwrap()
+}
+
+#[test]
+fn a_controllers_state_has_both_positions() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut messages = states("/arm_controller/state", 50);
+    // A log may have a message twice, and one later than it was sent.
+    messages.insert(7, messages[6].clone());
+    for path in [mcap(folder.path(), "zstd", &messages), bag(folder.path(), &messages)] {
+        let commands = read_commands(&path, &LogSettings::default(), &[]).unwrap();
+        assert!(commands.notes[0].contains("/arm_controller/state"), "{:?}", commands.notes);
+        let logged = parsed(&path, commands);
+        assert_eq!(logged.understood.as_ref().unwrap().joints, ["a", "b"]);
+        assert_eq!((logged.run.len(), logged.run.start), (50, 1.7e9));
+        for k in 0..50 {
+            let a = 1e-3 * k as f64;
+            assert_eq!(logged.run.times[k], (10 * k) as f64 / 1e3);
+            assert_eq!(logged.command[2 * k..][..2], [a, -a]);
+            assert_eq!(logged.run.q(k), [a - 1e-3, -a + 1e-3]);
+        }
+    }
+}
+
+#[test]
+fn two_topics_are_joined_at_the_slower_one() {
+    let folder = tempfile::tempdir().unwrap();
+    // Commands every 20 ms, states every 2 ms and 0.5 ms beside them, with a gap.
+    let commands: Vec<(i64, f64)> = (0..40).map(|k| (k * 20_000_000, 2e-2 * k as f64)).collect();
+    let state = |k: i64| (k * 2_000_000 - 500_000, 1e-3 * (2.0 * k as f64 - 0.5));
+    let states: Vec<_> = (0..400).filter(|k| !(95..105).contains(k)).map(state).collect();
+    let mut messages = positions("/joint_states", &states);
+    messages.extend(positions("/joint_commands", &commands));
+    let path = mcap(folder.path(), "none", &messages);
+    let found = read_commands(&path, &LogSettings::default(), &[]).unwrap();
+    assert!(found.notes[0].contains("/joint_commands, /joint_states"), "{:?}", found.notes);
+    assert!(found.notes[1].contains("1 samples have no commanded"), "{:?}", found.notes);
+    let logged = parsed(&path, found);
+    assert_eq!(logged.run.len(), 39);
+    for k in 0..39 {
+        let expected = logged.run.times[k];
+        assert!((logged.run.q(k)[0] - expected).abs() < 1e-12, "{k}");
+        assert!((logged.command[k] - expected).abs() < 1e-12, "{k}");
+    }
+    // Names of topics that do not tell are given, the commands last.
+    let swapped = [("/joint_states", "/x"), ("/joint_commands", "/y")];
+    for message in &mut messages {
+        let (_, name) = swapped.iter().find(|(old, _)| message.topic == *old).unwrap();
+        message.topic = (*name).into();
+    }
+    let path = mcap(folder.path(), "lz4", &messages);
+    let error = read_commands(&path, &LogSettings::default(), &[]).unwrap_err().to_string();
+    assert!(error.contains("no topic has commanded positions"), "{error}");
+    assert!(error.contains("--topic STATE COMMAND") && error.contains("/x"), "{error}");
+    let settings = LogSettings { topic: vec!["/x".into(), "/y".into()], ..LogSettings::default() };
+    let named = parsed(&path, read_commands(&path, &settings, &[]).unwrap());
+    assert_eq!((named.run.states, named.command), (logged.run.states, logged.command));
+}
+
+#[test]
+fn the_joints_decide_among_several_controllers() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut messages = states("/arm/state", 20);
+    let gripper = |k: i64| {
+        let data = controller_state(START + k, &["finger"], [&[0.0], &[0.1]]);
+        Message::new("/gripper/state", CONTROLLER, START + k, data)
+    };
+    messages.extend((1..20).map(gripper));
+    let path = mcap(folder.path(), "zstd", &messages);
+    let read = |settings: &LogSettings, joints: &[&str]| {
+        let joints: Vec<String> = joints.iter().map(|joint| (*joint).into()).collect();
+        read_commands(&path, settings, &joints)
+    };
+    let none = LogSettings::default();
+    let error = read(&none, &[]).unwrap_err();
+    assert!(matches!(&error, Error::SeveralTopics { topics, .. } if topics.len() == 2), "{error}");
+    let header = |commands: Commands| {
+        let text = String::from_utf8(commands.text).unwrap();
+        text.lines().next().unwrap().to_string()
+    };
+    let of_robot = header(read(&none, &["b", "a"]).unwrap());
+    assert!(of_robot.starts_with("t [ns],commanded_position b [rad],commanded_position a"));
+    let by_topic = LogSettings { topic: vec!["/gripper/state".into()], ..none.clone() };
+    assert!(header(read(&by_topic, &[]).unwrap()).contains("actual_position finger"));
+    // The log's names in the robot's order, and the robot's names in the header.
+    let renamed = LogSettings { joints: vec!["b".into(), "a".into()], ..none.clone() };
+    assert!(header(read(&renamed, &["j1", "j2"]).unwrap()).contains("commanded_position j1"));
+    let absent = read(&none, &["elbow"]).unwrap_err();
+    assert!(matches!(absent, Error::NoCommands { .. }), "{absent}");
+    let marked = LogSettings { marker: Some("/run".into()), ..none };
+    assert!(matches!(read(&marked, &[]), Err(Error::Setting(_))));
+}
+
+#[test]
+fn times_may_be_those_of_receipt() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut messages = states("/state", 5);
+    for (k, message) in (0..).zip(&mut messages) {
+        message.received = START + 1_000_000 * k;
+        message.data[4..12].fill(0);
+    }
+    let path = mcap(folder.path(), "none", &messages);
+    let error = read_commands(&path, &LogSettings::default(), &[]).unwrap_err();
+    assert!(matches!(error, Error::ZeroStamps { .. }), "{error}");
+    let settings = LogSettings { time: LogTime::Receipt, ..LogSettings::default() };
+    let logged = parsed(&path, read_commands(&path, &settings, &[]).unwrap());
+    assert_eq!(logged.run.times, [0.0, 0.001, 0.002, 0.003, 0.004]);
+    // A cut message, and one with too few positions.
+    messages[3].data.truncate(40);
+    let path = mcap(folder.path(), "none", &messages);
+    assert!(matches!(read_commands(&path, &settings, &[]), Err(Error::Damaged(_))));
+    messages[3].data = controller_state(START, &["a", "b"], [&[0.0, 0.0], &[0.0]]);
+    let path = mcap(folder.path(), "none", &messages);
+    let commands = read_commands(&path, &settings, &[]).unwrap();
+    assert!(commands.notes[1].contains("1 messages have no position"), "{:?}", commands.notes);
+}

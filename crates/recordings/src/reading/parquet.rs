@@ -1,0 +1,188 @@
+//! The numbers of a Parquet file as text, which the reader of logs reads like any other.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use parquet::basic::{LogicalType, TimeUnit};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::schema::types::ColumnDescriptor;
+use serde_json::Value;
+
+/// Names of the levels of a list, which are no part of a column's name.
+const LEVELS: [&str; 5] = ["list", "element", "item", "array", "bag"];
+
+/// The names that other files give to the values of lists, by the names of their columns.
+type ListNames = BTreeMap<String, Vec<String>>;
+
+/// The numbers of a column, row-major rows x width.
+struct NumberColumn {
+    name: String,
+    /// Values of each row: 1, or the length of lists, which are equally long.
+    width: usize,
+    is_list: bool,
+    values: Vec<Number>,
+}
+
+#[derive(Clone, Copy)]
+enum Number {
+    Float(f64),
+    /// Counts of nanoseconds since 1970 have more digits than [`f64`].
+    Integer(i64),
+    Missing,
+}
+
+/// Returns the columns of numbers as text with commas. Lists of one length give a column for each
+/// value, with the name that LeRobot's `info.json` beside the file, or in `meta` above it, has for
+/// it. Other columns are left out.
+pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, ParquetError> {
+    let reader = SerializedFileReader::new(bytes::Bytes::from(bytes))?;
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    let mut columns = Vec::new();
+    for (at, of) in schema.columns().iter().enumerate() {
+        columns.extend(numbers(&reader, at, of)?);
+    }
+    let names = list_names(path).unwrap_or_default();
+    let header: Vec<String> = columns.iter().flat_map(|column| column.header(&names)).collect();
+    let mut text = header.join(",").into_bytes();
+    text.push(b'\n');
+    let rows = columns.iter().map(|of| of.values.len() / of.width).max().unwrap_or_default();
+    for row in 0..rows {
+        let of_row =
+            columns.iter().flat_map(|of| of.values[row * of.width..].iter().take(of.width));
+        of_row.for_each(|value| value.write(&mut text));
+        text.pop();
+        text.push(b'\n');
+    }
+    Ok(text)
+}
+
+impl NumberColumn {
+    fn header(&self, names: &ListNames) -> Vec<String> {
+        // A separator or a quote in a name would divide the header elsewhere.
+        let plain = |name: String| name.replace([',', ';', '\t', '"', '\n', '\r'], " ");
+        let known = names.get(&self.name).filter(|names| names.len() == self.width);
+        let of = |at: usize| match known {
+            Some(names) => format!("{}_{}", self.name, names[at]),
+            None => format!("{}_{at}", self.name),
+        };
+        match self.is_list {
+            true => (0..self.width).map(|at| plain(of(at))).collect(),
+            false => vec![plain(self.name.clone())],
+        }
+    }
+}
+
+impl Number {
+    fn write(self, text: &mut Vec<u8>) {
+        text.extend(match self {
+            Self::Float(value) => format!("{value},").into_bytes(),
+            Self::Integer(value) => format!("{value},").into_bytes(),
+            Self::Missing => b",".to_vec(),
+        });
+    }
+}
+
+/// Returns the numbers of a column; `None` for one that has none, or has lists of several lengths.
+fn numbers<R: FileReader>(
+    reader: &R,
+    at: usize,
+    of: &ColumnDescriptor,
+) -> Result<Option<NumberColumn>, ParquetError> {
+    let (mut values, mut lengths) = (Vec::new(), Vec::new());
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group)?;
+        let rows = group.metadata().num_rows().try_into().unwrap_or_default();
+        match group.get_column_reader(at)? {
+            ColumnReader::Int32ColumnReader(column) => {
+                read(column, of, rows, |v| Number::Integer(v.into()), &mut values, &mut lengths)?;
+            }
+            ColumnReader::Int64ColumnReader(column) => {
+                read(column, of, rows, Number::Integer, &mut values, &mut lengths)?;
+            }
+            ColumnReader::FloatColumnReader(column) => {
+                read(column, of, rows, |v| Number::Float(v.into()), &mut values, &mut lengths)?;
+            }
+            ColumnReader::DoubleColumnReader(column) => {
+                read(column, of, rows, Number::Float, &mut values, &mut lengths)?;
+            }
+            _ => return Ok(None),
+        }
+    }
+    let width = lengths.first().copied().unwrap_or(1);
+    if width == 0 || of.max_rep_level() > 1 || lengths.iter().any(|length| *length != width) {
+        return Ok(None);
+    }
+    let parts = of.path().parts().iter();
+    let parts: Vec<&str> = parts.map(String::as_str).filter(|p| !LEVELS.contains(p)).collect();
+    let name = parts.join(".") + unit_of(of);
+    Ok(Some(NumberColumn { name, width, is_list: of.max_rep_level() > 0, values }))
+}
+
+/// Reads the rows of a column in one group of rows, and the number of values of each.
+fn read<T: DataType>(
+    mut column: ColumnReaderImpl<T>,
+    of: &ColumnDescriptor,
+    rows: usize,
+    number: impl Fn(T::T) -> Number,
+    values: &mut Vec<Number>,
+    lengths: &mut Vec<usize>,
+) -> Result<(), ParquetError>
+where
+    T::T: Copy,
+{
+    let (mut defined, mut repeated, mut present) = (Vec::new(), Vec::new(), Vec::new());
+    let levels =
+        column.read_records(rows, Some(&mut defined), Some(&mut repeated), &mut present)?.2;
+    let mut present = present.into_iter();
+    for level in 0..levels {
+        let is_defined = defined.get(level).is_none_or(|of_it| *of_it == of.max_def_level());
+        let value = is_defined.then(|| present.next()).flatten();
+        values.push(value.map_or(Number::Missing, &number));
+        match repeated.get(level) {
+            Some(1..) => *lengths.last_mut().unwrap_or(&mut 0) += 1,
+            _ => lengths.push(1),
+        }
+    }
+    Ok(())
+}
+
+/// Returns the unit of a column of times, as it stands in the names of columns.
+fn unit_of(of: &ColumnDescriptor) -> &'static str {
+    match of.logical_type_ref() {
+        Some(LogicalType::Timestamp(time)) => match time.unit {
+            TimeUnit::MILLIS => " [ms]",
+            TimeUnit::MICROS => " [us]",
+            TimeUnit::NANOS => " [ns]",
+        },
+        _ => "",
+    }
+}
+
+/// Returns the names of the values of lists, of the description of LeRobot's data that the file
+/// belongs to.
+fn list_names(path: &Path) -> Option<ListNames> {
+    let above = path.ancestors().skip(1).take(4).map(|folder| folder.join("meta/info.json"));
+    let mut places = std::iter::once(path.with_file_name("info.json")).chain(above);
+    let text = places.find_map(|place| reachtube_files::bytes(&place).ok())?;
+    let info: Value = serde_json::from_slice(&text).ok()?;
+    let features = info.get("features")?.as_object()?;
+    let named = |(name, of): (&String, &Value)| {
+        let mut names = Vec::new();
+        texts(of.get("names")?, &mut names);
+        Some((name.clone(), names))
+    };
+    Some(features.iter().filter_map(named).collect())
+}
+
+/// Adds all texts in a value, which may be nested.
+fn texts(value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::String(text) => found.push(text.clone()),
+        Value::Array(all) => all.iter().for_each(|value| texts(value, found)),
+        Value::Object(all) => all.values().for_each(|value| texts(value, found)),
+        _ => {}
+    }
+}
