@@ -80,7 +80,8 @@ impl<'a> Positions<'a> {
             for _ in 0..3 {
                 cdr.doubles()?;
             }
-            (cdr.i32()?, cdr.u32()?);
+            cdr.i32()?;
+            cdr.u32()?;
             Ok::<_, String>(positions)
         };
         Ok(Self { stamp, names, values: vec![point()?, point()?] })

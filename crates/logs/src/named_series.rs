@@ -47,26 +47,20 @@ impl AllSeries {
             self.incomplete += 1;
             return Ok(());
         }
-        let is_of = |series: &&mut NamedSeries| series.topic == topic && series.has(&names);
         let time = [if receipt { message.log_time } else { stamp }, message.log_time];
-        let at = match self.series.iter_mut().find(is_of) {
-            Some(series) => series,
-            None if self.series.iter().filter(|of| of.topic == topic).count() >= MOST_SETS => {
+        let of_topic = |of: &NamedSeries| of.topic == topic;
+        let known = self.series.iter().position(|of| of_topic(of) && of.has(&names));
+        let index = known.unwrap_or(self.series.len());
+        if known.is_none() {
+            if self.series.iter().filter(|of| of_topic(of)).count() >= MOST_SETS {
                 self.incomplete += 1;
                 return Ok(());
             }
-            None => {
-                let names = names.iter().map(|name| (*name).to_string()).collect();
-                let has_commands = is_of_controller;
-                self.series.push(NamedSeries {
-                    topic,
-                    names,
-                    has_commands,
-                    ..NamedSeries::default()
-                });
-                self.series.last_mut().expect("one was added")
-            }
-        };
+            let names = names.iter().map(|name| (*name).to_string()).collect();
+            let has_commands = is_of_controller;
+            self.series.push(NamedSeries { topic, names, has_commands, ..NamedSeries::default() });
+        }
+        let at = &mut self.series[index];
         at.times.push(time);
         for of_kind in values {
             // Messages may have the joints in another order.
@@ -90,7 +84,7 @@ impl NamedSeries {
         if self.has_commands { 2 * self.names.len() } else { self.names.len() }
     }
 
-    /// Brings samples into the order of their times, or else of their receipt, and omits repetitions
+    /// Brings samples into the order of their times, or else of receipt, and omits repetitions
     /// of a sample.
     pub(crate) fn sort(&mut self) {
         let increases = |times: &[[i64; 2]]| times.windows(2).all(|pair| pair[0][0] < pair[1][0]);

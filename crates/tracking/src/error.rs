@@ -24,7 +24,7 @@ pub enum Error {
     },
     /// An MCAP or rosbag2 log could not be read.
     #[error(transparent)]
-    Log(#[from] reachtube_logs::Error),
+    Log(Box<reachtube_logs::Error>),
     /// The recordings are of different joints.
     #[error(
         "{}: it has the joints {}, but {} has {}; give recordings of one arm",
@@ -115,6 +115,12 @@ reachtube_files::kinds!(Error {
 
 /// A result of this crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl From<reachtube_logs::Error> for Error {
+    fn from(error: reachtube_logs::Error) -> Self {
+        Self::Log(Box::new(error))
+    }
+}
 
 impl From<reachtube_recordings::Error> for Error {
     fn from(error: reachtube_recordings::Error) -> Self {

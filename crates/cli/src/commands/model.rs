@@ -7,7 +7,7 @@ use reachtube::conform::Group;
 use reachtube::finding::{FrontEnd, Summary};
 use reachtube::page::{Assets, built_pages};
 use reachtube::pipeline::{Built, Choice, Choices, Error as PipelineError, build};
-use reachtube::recordings::{LogSettings, Torque};
+use reachtube::recordings::Torque;
 use reachtube::robot::{Lock, Robot};
 use reachtube::write;
 
@@ -216,8 +216,7 @@ fn choices(args: &Arguments) -> Result<Choices> {
         held_out: (!args.held_out.is_empty()).then(|| args.held_out.clone()),
         gains: args.gains.clone(),
         lock: args.lock.lock.iter().map(ToString::to_string).collect(),
-        columns: log.columns.clone().unwrap_or_default(),
-        log: log.settings(),
+        columns: args.log.columns.clone().unwrap_or_default(),
         log: args.log.settings(),
         fit: (!args.fit.is_empty()).then(|| args.fit.clone()),
         ..Choices::default()

@@ -36,6 +36,7 @@ fn model() -> TrackingModel {
         left_out: NeedsOfMotions { motions: 9, calibrated: None, furthest: None, inside: None },
         recordings: vec![],
         columns: reachtube_recordings::ColumnSettings::default(),
+        log: reachtube_recordings::LogSettings::default(),
         sha256: String::new(),
     }
 }

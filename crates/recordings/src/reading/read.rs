@@ -86,7 +86,8 @@ pub fn read_logged_runs(
     };
     let read = |part: RunRows| {
         let digest = Sha256::new_with_prefix(&part.text);
-        let dialect = Dialect { line: dialects[0].line + part.skipped, ..dialects[0].clone() };
+        let mut dialect = dialects[0].clone();
+        dialect.line += part.skipped;
         let logged = logged(files, vec![part.text], vec![dialect], digest, options)?;
         Ok((Some(part.run), logged))
     };
@@ -118,7 +119,7 @@ fn contents(files: &[PathBuf]) -> Result<(Vec<Vec<u8>>, Sha256), Vec<Defect>> {
     let mut text = |file: &PathBuf| {
         let (text, _) = content(file)?;
         all.update(&text);
-        Ok(text)
+        Ok::<_, Vec<Defect>>(text)
     };
     let texts = files.iter().map(&mut text).collect::<Result<_, _>>()?;
     Ok((texts, all))

@@ -89,9 +89,9 @@ fn options<'a>(columns: &'a ColumnSettings, joints: &'a [String]) -> LoggedOptio
 fn a_folder_of_lerobot_has_a_recording_for_each_episode() {
     let folder = tempfile::tempdir().unwrap();
     let path = lerobot(folder.path());
-    assert_eq!(table_files(folder.path()).unwrap(), [path.clone()]);
+    let files = [path];
+    assert_eq!(table_files(folder.path()).unwrap(), files);
     let columns = ColumnSettings::default();
-    let files = [path.clone()];
     let runs = read_logged_runs(&files, &options(&columns, &[])).unwrap();
     assert_eq!(
         runs.iter().map(|(run, _)| run.as_deref()).collect::<Vec<_>>(),
