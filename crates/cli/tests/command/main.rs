@@ -43,6 +43,7 @@ mod stop;
 mod system;
 mod terminal;
 mod tracking;
+mod tracking_logs;
 mod verdicts;
 mod verify;
 mod verify_stops;

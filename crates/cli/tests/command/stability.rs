@@ -21,10 +21,9 @@ const LARGEST_CHANGE: f64 = 0.1;
 const MISSED: f64 = 0.12;
 
 /// Returns the CSV files in a folder and its folders, sorted by name.
-fn table_files(folder: &Path) -> Vec<PathBuf> {
+fn csv_files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let files =
-        entries.flat_map(|path| if path.is_dir() { table_files(&path) } else { vec![path] });
+    let files = entries.flat_map(|path| if path.is_dir() { csv_files(&path) } else { vec![path] });
     let mut files: Vec<PathBuf> =
         files.filter(|path| path.extension().is_some_and(|end| end == "csv")).collect();
     files.sort();
@@ -35,7 +34,7 @@ fn table_files(folder: &Path) -> Vec<PathBuf> {
 /// copies their index. Returns the names of the logs in reverse order.
 fn rewrite(lab: &Lab, data: &str, (_, kept): Loss) -> Vec<String> {
     let mut names = Vec::new();
-    for path in table_files(Path::new(data)).iter().rev() {
+    for path in csv_files(Path::new(data)).iter().rev() {
         let name = format!("logs/{}", path.strip_prefix(data).unwrap().display());
         std::fs::create_dir_all(lab.path(&name).parent().unwrap()).unwrap();
         let text = std::fs::read_to_string(path).unwrap();
