@@ -9,7 +9,7 @@ use crate::servo::log;
 /// Writes the logs of the servo as CSV, as MCAP and as bags, with names and stamps of ROS.
 fn lab() -> Lab {
     let lab = Lab::new();
-    for folder in ["csv", "mcap", "bags"] {
+    for folder in ["csv", "mcap"] {
         std::fs::create_dir_all(lab.path(folder)).unwrap();
     }
     for number in 1..=4 {
@@ -31,6 +31,7 @@ fn lab() -> Lab {
         lab.write(&format!("csv/{number}.csv"), text);
         lab.write(&format!("mcap/{number}.mcap"), mcap_bytes("zstd", &messages));
         let folder = format!("bags/{number}");
+        std::fs::create_dir_all(lab.path(&folder)).unwrap();
         lab.write(&format!("{folder}/metadata.yaml"), "");
         bag(&lab.path(&folder), &messages);
     }

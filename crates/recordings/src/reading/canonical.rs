@@ -5,7 +5,7 @@ use std::path::Path;
 use reachtube_files::hex;
 use sha2::{Digest, Sha256};
 
-use super::content::content;
+use super::content::{Content, content};
 use super::dialect::Dialect;
 use super::name::Quantity;
 use super::table::{ReadColumn, Table};
@@ -34,7 +34,7 @@ const MOST_JOINTS: usize = 100;
 ///
 /// Every defect of the file, with its line and joint.
 pub fn read_csv(path: &Path, options: &ReadOptions) -> Result<Run, Vec<Defect>> {
-    let (text, digest) = content(path)?;
+    let Content { text, digest, .. } = content(path)?;
     parse(path, &text, digest, options)
 }
 

@@ -6,9 +6,17 @@ use sha2::{Digest, Sha256};
 
 use crate::defect::{Defect, DefectKind};
 
-/// Returns the text of a file, or the numbers of a Parquet file as text, and the SHA-256 of the
-/// file.
-pub(super) fn content(path: &Path) -> Result<(Vec<u8>, Sha256), Vec<Defect>> {
+/// What was read of a file.
+pub(super) struct Content {
+    /// Its text, or the numbers of a Parquet file as text.
+    pub text: Vec<u8>,
+    /// The SHA-256 of the file.
+    pub digest: Sha256,
+    /// What is missing in the text.
+    pub note: Option<String>,
+}
+
+pub(super) fn content(path: &Path) -> Result<Content, Vec<Defect>> {
     let refused = |problem: String, remedy: &str| {
         vec![Defect::new(path, None, problem, remedy).of_kind(DefectKind::File)]
     };
@@ -17,12 +25,12 @@ pub(super) fn content(path: &Path) -> Result<(Vec<u8>, Sha256), Vec<Defect>> {
     })?;
     let digest = Sha256::new_with_prefix(&bytes);
     if !bytes.starts_with(MAGIC) {
-        return Ok((bytes, digest));
+        return Ok(Content { text: bytes, digest, note: None });
     }
-    let text = text_of(path, bytes).map_err(|problem| {
+    let (text, note) = text_of(path, bytes).map_err(|problem| {
         refused(format!("the Parquet file cannot be read: {problem}"), "write it again")
     })?;
-    Ok((text, digest))
+    Ok(Content { text, digest, note })
 }
 
 /// The bytes that a Parquet file starts with.
@@ -32,6 +40,6 @@ const MAGIC: &[u8] = b"PAR1";
 use super::parquet::text_of;
 
 #[cfg(not(feature = "parquet"))]
-fn text_of(_: &Path, _: Vec<u8>) -> Result<Vec<u8>, &'static str> {
+fn text_of(_: &Path, _: Vec<u8>) -> Result<(Vec<u8>, Option<String>), &'static str> {
     Err("its format is not built in; build with the feature parquet")
 }

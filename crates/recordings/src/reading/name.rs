@@ -57,6 +57,9 @@ const FILLERS: [&str; 17] = [
     "header",
 ];
 
+/// The words that LeRobot's names of measured positions begin with.
+const STATE: [&str; 2] = ["observation", "state"];
+
 impl ColumnName {
     pub(super) fn new(name: &str) -> Self {
         let words = words(name);
@@ -79,7 +82,8 @@ impl ColumnName {
         };
         let angle = words.iter().find_map(|word| angle_unit(word));
         let time_unit = (quantity == Some(Quantity::Time)).then(|| time_unit(&words)).flatten();
-        let joint = words.iter().filter(|word| is_of_joint(word)).cloned().collect();
+        let own = if begins(&words, &STATE) { &words[STATE.len()..] } else { &words };
+        let joint = own.iter().filter(|word| is_of_joint(word)).cloned().collect();
         Self { words, quantity, origin, joint, time_unit, angle }
     }
 
@@ -175,9 +179,11 @@ fn quantity(word: &str) -> Option<Quantity> {
 
 /// Returns the quantity of LeRobot's names, which have no word for it.
 fn of_lerobot(words: &[String]) -> Option<Quantity> {
-    let starts = |with: &[&str]| words.iter().zip(with).filter(|(a, b)| a == b).count();
-    let is_joint = starts(&["action"]) == 1 || starts(&["observation", "state"]) == 2;
-    is_joint.then_some(Quantity::Position)
+    (begins(words, &["action"]) || begins(words, &STATE)).then_some(Quantity::Position)
+}
+
+fn begins(words: &[String], with: &[&str]) -> bool {
+    words.len() >= with.len() && words.iter().zip(with).all(|(word, with)| word == with)
 }
 
 /// Returns how strongly a word stands for its quantity against the others of a name.
@@ -273,6 +279,7 @@ mod tests {
         assert_eq!(ColumnName::new("time [ms]").time_unit, Some(TimeUnit::Milliseconds));
         assert_eq!(ColumnName::new("timestamp_ns").time_unit, Some(TimeUnit::Nanoseconds));
         assert_eq!(ColumnName::new("t").time_unit, None);
+        assert_eq!(ColumnName::new("observation.state_pan.pos").joint, ["pan"]);
         assert_eq!(ColumnName::new("q1 [deg]").angle, Some(AngleUnit::Degrees));
         assert_eq!(ColumnName::new("q1 [deg]").number(), Some(1));
         assert_eq!(ColumnName::new("vel_2(rad/s)").angle, Some(AngleUnit::Radians));

@@ -5,7 +5,7 @@ use std::path::Path;
 use reachtube_files::hex;
 use sha2::Digest;
 
-use super::content::content;
+use super::content::{Content, content};
 use super::dialect::Dialect;
 use super::even_times::with_times;
 use super::joints::listed;
@@ -75,7 +75,7 @@ pub fn read_named(
     path: &Path,
     columns: &NamedColumns<'_>,
 ) -> Result<(Vec<NamedRun>, String), Vec<Defect>> {
-    let (mut bytes, digest) = content(path)?;
+    let Content { text: mut bytes, digest, .. } = content(path)?;
     let sha256 = hex(&digest.finalize());
     let own = dialect(path, &bytes)?;
     let run = run_column(&own);

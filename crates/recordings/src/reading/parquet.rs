@@ -36,15 +36,25 @@ enum Number {
 
 /// Returns the columns of numbers as text with commas. Lists of one length give a column for each
 /// value, with the name that LeRobot's `info.json` beside the file, or in `meta` above it, has for
-/// it. Other columns are left out.
-pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, ParquetError> {
+/// it. Other columns are left out. A note says so if that file cannot be read.
+pub(super) fn text_of(
+    path: &Path,
+    bytes: Vec<u8>,
+) -> Result<(Vec<u8>, Option<String>), ParquetError> {
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     let mut columns = Vec::new();
     for (at, of) in schema.columns().iter().enumerate() {
         columns.extend(numbers(&reader, at, of)?);
     }
-    let names = list_names(path).unwrap_or_default();
+    let (names, note) = match list_names(path) {
+        Ok(names) => (names, None),
+        Err(problem) => (None, Some(format!("{problem}; the values of lists have numbers"))),
+    };
+    // LeRobot's times are in s.
+    let of_time = columns.iter_mut().find(|of| names.is_some() && of.name == "timestamp");
+    of_time.into_iter().for_each(|of| of.name += " [s]");
+    let names = names.unwrap_or_default();
     let header: Vec<String> = columns.iter().flat_map(|column| column.header(&names)).collect();
     let mut text = header.join(",").into_bytes();
     text.push(b'\n');
@@ -56,7 +66,7 @@ pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, ParquetErr
         text.pop();
         text.push(b'\n');
     }
-    Ok(text)
+    Ok((text, note))
 }
 
 impl NumberColumn {
@@ -161,20 +171,21 @@ fn unit_of(of: &ColumnDescriptor) -> &'static str {
     }
 }
 
-/// Returns the names of the values of lists, of the description of LeRobot's data that the file
-/// belongs to.
-fn list_names(path: &Path) -> Option<ListNames> {
+/// Returns the names of the values of lists, if the file belongs to data that LeRobot describes.
+fn list_names(path: &Path) -> Result<Option<ListNames>, String> {
     let above = path.ancestors().skip(1).take(4).map(|folder| folder.join("meta/info.json"));
     let mut places = std::iter::once(path.with_file_name("info.json")).chain(above);
-    let text = places.find_map(|place| reachtube_files::bytes(&place).ok())?;
-    let info: Value = serde_json::from_slice(&text).ok()?;
-    let features = info.get("features")?.as_object()?;
+    let Some(place) = places.find(|place| place.is_file()) else { return Ok(None) };
+    let problem = |problem: String| format!("{}: {problem}", place.display());
+    let text = reachtube_files::bytes(&place).map_err(|error| problem(error.to_string()))?;
+    let info: Value = serde_json::from_slice(&text).map_err(|error| problem(error.to_string()))?;
     let named = |(name, of): (&String, &Value)| {
         let mut names = Vec::new();
         texts(of.get("names")?, &mut names);
         Some((name.clone(), names))
     };
-    Some(features.iter().filter_map(named).collect())
+    let features = info.get("features").and_then(Value::as_object);
+    Ok(features.map(|features| features.iter().filter_map(named).collect()))
 }
 
 /// Adds all texts in a value, which may be nested.

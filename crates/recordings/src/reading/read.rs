@@ -55,9 +55,7 @@ use crate::defect::Defect;
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn read_logged(files: &[PathBuf], options: &LoggedOptions) -> Result<Logged, Vec<Defect>> {
-    let (contents, digest) = contents(files)?;
-    let dialects = dialects(files, &contents)?;
-    logged(files, contents, dialects, digest, options)
+    LogText::read(files)?.logged(options)
 }
 
 /// Reads the recordings in the files of a log, as [`read_logged`] does. A file with a column `run`,
@@ -75,20 +73,20 @@ pub fn read_logged_runs(
     files: &[PathBuf],
     options: &LoggedOptions,
 ) -> Result<Vec<(Option<String>, Logged)>, Vec<Defect>> {
-    let (contents, digest) = contents(files)?;
-    let dialects = dialects(files, &contents)?;
-    let parts = match (&contents[..], &dialects[..]) {
-        ([bytes], [dialect]) => parts(bytes, dialect),
+    let log = LogText::read(files)?;
+    let parts = match (&log.texts[..], &log.dialects[..]) {
+        ([text], [dialect]) => parts(text, dialect),
         _ => None,
     };
     let Some(parts) = parts else {
-        return Ok(vec![(None, logged(files, contents, dialects, digest, options)?)]);
+        return Ok(vec![(None, log.logged(options)?)]);
     };
     let read = |part: RunRows| {
         let digest = Sha256::new_with_prefix(&part.text);
-        let mut dialect = dialects[0].clone();
+        let mut dialect = log.dialects[0].clone();
         dialect.line += part.skipped;
-        let logged = logged(files, vec![part.text], vec![dialect], digest, options)?;
+        let (texts, dialects, notes) = (vec![part.text], vec![dialect], log.notes.clone());
+        let logged = LogText { files, texts, dialects, digest, notes }.logged(options)?;
         Ok((Some(part.run), logged))
     };
     parts.into_iter().map(read).collect()
@@ -106,58 +104,67 @@ pub fn parse_logged(
 ) -> Result<Logged, Vec<Defect>> {
     let files = [name.to_path_buf()];
     let digest = Sha256::new_with_prefix(&text);
-    let dialects = dialects(&files, std::slice::from_ref(&text))?;
-    logged(&files, vec![text], dialects, digest, options)
+    let texts = vec![text];
+    let dialects = dialects(&files, &texts)?;
+    LogText { files: &files, texts, dialects, digest, notes: vec![] }.logged(options)
 }
 
-/// Returns the texts of files, and the SHA-256 of all of them.
-fn contents(files: &[PathBuf]) -> Result<(Vec<Vec<u8>>, Sha256), Vec<Defect>> {
-    if let [file] = files {
-        return content(file).map(|(text, digest)| (vec![text], digest));
-    }
-    let mut all = Sha256::new();
-    let mut text = |file: &PathBuf| {
-        let (text, _) = content(file)?;
-        all.update(&text);
-        Ok::<_, Vec<Defect>>(text)
-    };
-    let texts = files.iter().map(&mut text).collect::<Result<_, _>>()?;
-    Ok((texts, all))
-}
-
-/// Reads a recording from the texts of files.
-fn logged(
-    files: &[PathBuf],
-    mut contents: Vec<Vec<u8>>,
-    mut dialects: Vec<Dialect>,
+/// The texts of the files of one recording.
+struct LogText<'a> {
+    files: &'a [PathBuf],
+    texts: Vec<Vec<u8>>,
+    dialects: Vec<Dialect>,
+    /// SHA-256 of the files.
     digest: Sha256,
-    options: &LoggedOptions,
-) -> Result<Logged, Vec<Defect>> {
-    if let Some(rate) = options.columns.rate {
-        let timed = contents.iter().zip(&dialects);
-        contents = timed.map(|(bytes, dialect)| with_times(bytes, dialect, rate)).collect();
-        dialects = self::dialects(files, &contents)?;
-    }
-    let mut logged = match &dialects[..] {
-        [only]
-            if *options.columns == ColumnSettings::default()
-                && is_recording(only)
-                && options.wanted != Wanted::Commands =>
-        {
-            as_it_is(files, &contents[0], only, options)?
-        }
-        _ => {
-            let assignment = assign(files, &dialects, options)?;
-            let log = Log { files, dialects: &dialects, assignment: &assignment, options };
-            log.logged(&contents)?
-        }
-    };
-    logged.run.sha256 = hex(&digest.finalize());
-    logged.run.truncate(options.until);
-    Ok(logged)
+    /// What is missing in the texts.
+    notes: Vec<String>,
 }
 
-fn dialects(files: &[PathBuf], contents: &[Vec<u8>]) -> Result<Vec<Dialect>, Vec<Defect>> {
-    let all = files.iter().zip(contents).map(|(file, bytes)| Dialect::of(file, bytes));
+impl<'a> LogText<'a> {
+    fn read(files: &'a [PathBuf]) -> Result<Self, Vec<Defect>> {
+        let (mut texts, mut notes, mut digest) = (Vec::new(), Vec::new(), Sha256::new());
+        for file in files {
+            let own = content(file)?;
+            match files {
+                [_] => digest = own.digest,
+                _ => digest.update(&own.text),
+            }
+            texts.push(own.text);
+            notes.extend(own.note);
+        }
+        let dialects = dialects(files, &texts)?;
+        Ok(Self { files, texts, dialects, digest, notes })
+    }
+
+    fn logged(mut self, options: &LoggedOptions) -> Result<Logged, Vec<Defect>> {
+        let files = self.files;
+        if let Some(rate) = options.columns.rate {
+            let timed = self.texts.iter().zip(&self.dialects);
+            self.texts = timed.map(|(text, dialect)| with_times(text, dialect, rate)).collect();
+            self.dialects = dialects(files, &self.texts)?;
+        }
+        let mut logged = match &self.dialects[..] {
+            [only]
+                if *options.columns == ColumnSettings::default()
+                    && is_recording(only)
+                    && options.wanted != Wanted::Commands =>
+            {
+                as_it_is(files, &self.texts[0], only, options)?
+            }
+            _ => {
+                let assignment = assign(files, &self.dialects, options)?;
+                let dialects = &self.dialects;
+                Log { files, dialects, assignment: &assignment, options }.logged(&self.texts)?
+            }
+        };
+        logged.notes.splice(..0, self.notes);
+        logged.run.sha256 = hex(&self.digest.finalize());
+        logged.run.truncate(options.until);
+        Ok(logged)
+    }
+}
+
+fn dialects(files: &[PathBuf], texts: &[Vec<u8>]) -> Result<Vec<Dialect>, Vec<Defect>> {
+    let all = files.iter().zip(texts).map(|(file, text)| Dialect::of(file, text));
     all.collect::<Result<_, _>>().map_err(|defect| vec![*defect])
 }

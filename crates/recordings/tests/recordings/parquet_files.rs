@@ -110,11 +110,18 @@ fn a_folder_of_lerobot_has_a_recording_for_each_episode() {
     let runs = read_logged_runs(&files, &options(&columns, &joints)).unwrap();
     assert_eq!(runs[1].1.command, [1.5, 1.6, 1.7].map(|value: f32| f64::from(value)));
     assert!(runs[1].1.notes[0].contains("pan.pos, which are not used"), "{:?}", runs[1].1.notes);
-    // Without their description, values of lists have numbers.
-    std::fs::remove_file(folder.path().join("meta/info.json")).unwrap();
-    let pattern: ColumnSettings = "r=action_{},q=observation.state_{}".parse().unwrap();
+    // Without their description, values of lists have numbers; if it cannot be read, a note says so.
+    let info = folder.path().join("meta/info.json");
+    std::fs::write(&info, "{\"features\": {").unwrap();
+    let pattern: ColumnSettings = "r=action_{},q=observation.state_{},time_unit=s".parse().unwrap();
     let runs = read_logged_runs(&files, &options(&pattern, &[])).unwrap();
     assert_eq!(runs[0].1.command.len(), 6);
+    let note = &runs[0].1.notes[0];
+    assert!(note.contains("info.json: EOF") && note.contains("have numbers"), "{note}");
+    std::fs::remove_file(info).unwrap();
+    let (seconds, second) = ("time_unit=s".parse().unwrap(), ["1".to_string()]);
+    let runs = read_logged_runs(&files, &options(&seconds, &second)).unwrap();
+    assert_eq!(runs[0].1.command, [1.5, 1.6, 1.7].map(|value: f32| f64::from(value)));
     // One recording has no two times 0.
     let error = read_logged(&files, &options(&columns, &[])).unwrap_err();
     assert!(error[0].to_string().contains("file-000.parquet:5: timestamp = 0"), "{}", error[0]);
