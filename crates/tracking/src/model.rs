@@ -55,7 +55,8 @@ pub struct TrackingModel {
     /// Columns whose names do not tell, with which other logs are read too.
     #[serde(default, skip_serializing_if = "is_default")]
     pub columns: ColumnSettings,
-    /// Topics and times of MCAP and rosbag2 logs, with which others are read too.
+    /// Topics and times of MCAP and rosbag2 logs, and names of joints in logs, with which others
+    /// are read too.
     #[serde(default, skip_serializing_if = "is_default")]
     pub log: LogSettings,
     /// SHA-256 of the rest of the file's content, so that a change is noticed.
@@ -240,11 +241,9 @@ impl TrackingModel {
         Err(Error::OtherJoints { file: file.into(), joints: joints.to_vec(), of_model })
     }
 
-    /// Returns the model of recordings that were read with some columns, topics and times.
+    /// Returns the model of recordings that were read with some columns, topics and names.
     #[must_use]
     pub fn read_with(self, columns: ColumnSettings, log: LogSettings) -> Self {
-        // The joints are the model's own.
-        let log = LogSettings { joints: vec![], ..log };
         Self { columns, log, ..self }.sealed()
     }
 

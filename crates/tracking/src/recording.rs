@@ -79,7 +79,11 @@ impl<'a> Reading<'a> {
             }
             for log in logs {
                 for (plan, logged) in self.logged(&log, Wanted::Commands)? {
-                    notes.extend(logged.notes.iter().cloned());
+                    for note in &logged.notes {
+                        if !notes.contains(note) {
+                            notes.push(note.clone());
+                        }
+                    }
                     let recording = TrackedRun::of(plan, logged);
                     match recordings.iter().find(|other| other.sha256 == recording.sha256) {
                         None => recordings.push(recording),
@@ -121,6 +125,8 @@ impl<'a> Reading<'a> {
                 let axes = self.axes.unwrap_or_default().iter();
                 let joints: Vec<String> = axes.map(|axis| axis.name.clone()).collect();
                 let Commands { text, notes } = read_commands(path, self.log, &joints)?;
+                // The text has the names of the robot.
+                let options = LoggedOptions { joints: &[], ..options };
                 let mut logged = parse_logged(path, text, &options).map_err(refused)?;
                 logged.notes.splice(..0, notes);
                 vec![(path.clone(), logged)]

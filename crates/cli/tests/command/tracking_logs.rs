@@ -38,6 +38,26 @@ fn lab() -> Lab {
     lab
 }
 
+#[test]
+fn joints_that_are_chosen_by_number_are_found_in_other_logs() {
+    let lab = Lab::new();
+    std::fs::create_dir_all(lab.path("logs")).unwrap();
+    for number in 1..=4 {
+        let log = log(number);
+        let mut text = String::from("time [s],action_0,action_1,action_2");
+        text += ",observation.state_0,observation.state_1,observation.state_2\n";
+        for (k, time) in log.times.iter().enumerate() {
+            let [r, y] = [log.command[k], log.actual[k]];
+            text += &format!("{time},{},7,{},{},7,{}\n", r[0], r[1], y[0], y[1]);
+        }
+        lab.write(&format!("logs/{number}.csv"), text);
+    }
+    lab.run("model --data logs --joints 0,2 --out two").exits(0);
+    assert_eq!(numbers(&lab, "two")[0][1]["name"], "joint_2");
+    lab.run("check --model two/model.json --data logs/2.csv").exits(0);
+    lab.run("reach --model two/model.json --plan logs/3.csv --out tube").exits(0);
+}
+
 /// Returns the numbers of a model.
 fn numbers(lab: &Lab, model: &str) -> Value {
     let model: Value = serde_json::from_str(&lab.read(&format!("{model}/model.json"))).unwrap();
@@ -60,6 +80,7 @@ fn logs_of_ros_give_the_model_of_their_csv_files() {
     // One joint may be chosen.
     lab.run("model --data mcap --joints b --out one").exits(0);
     assert_eq!(numbers(&lab, "one")[0][0]["name"], "b");
+    lab.run("check --model one/model.json --data csv").exits(0);
     let run = lab.run("model --data mcap --topic /joint_states --out none").exits(2);
     assert!(run.stderr.contains("--topic STATE COMMAND"), "{}", run.stderr);
     let run = lab.run("model --data mcap --joints c --out none").exits(2);

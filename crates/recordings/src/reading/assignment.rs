@@ -90,10 +90,11 @@ impl Finder<'_> {
         let mut notes = Vec::new();
         let joints = self.joints()?;
         let (q, others) = self.positions(&joints)?;
-        if !others.is_empty() {
+        let is_chosen = self.options.robot.is_none() && !self.options.joints.is_empty();
+        if !others.is_empty() && !is_chosen {
             let why = match self.options.robot {
                 Some(_) => "the robot has no joint for",
-                None => "no commanded joint was chosen for",
+                None => "there is no command of",
             };
             let others = listed(others.iter().map(|column| column.text.as_str()));
             notes.push(format!("{why} {others}, which are not used"));

@@ -46,6 +46,12 @@ impl Joints {
     pub(super) fn of_robot(options: &LoggedOptions) -> Option<Self> {
         let joints = options.robot?;
         let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
+        let given = options.joints;
+        if given.len() == names.len() && !given.iter().any(|name| names.contains(name)) {
+            // The log has other names than the robot.
+            let places = (0..given.len()).collect();
+            return Some(Self { names: given.to_vec(), places, first: options.columns.first });
+        }
         let place = |(at, name): (usize, &String)| {
             options.joints.iter().position(|other| other == name).unwrap_or(at)
         };

@@ -27,8 +27,9 @@ pub struct LoggedOptions<'a> {
     /// The robot's joints, which the columns are matched with. Without them, the positions of a log
     /// are its joints.
     pub robot: Option<&'a [Axis]>,
-    /// Names of the robot's joints in the order of numbered columns; empty for the robot's order.
-    /// Without a robot, the joints that are read, in their order; empty for all.
+    /// Names of the robot's joints in the order of numbered columns, or the log's names in the
+    /// order of the robot; empty for the robot's names and order. Without a robot, the joints that
+    /// are read, in their order; empty for all.
     pub joints: &'a [String],
     /// Names and units of columns that the user gives.
     pub columns: &'a ColumnSettings,
