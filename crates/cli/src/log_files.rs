@@ -21,13 +21,13 @@ pub(crate) struct LogArguments {
     /// also rate=100 (Hz) for logs without a time, first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
-    /// Topics with joint states in MCAP and rosbag2; several complement each other; without
-    /// --torque, of the actual and then of the commanded positions [default: the only one that
-    /// names joints of the robot]
+    /// Topics with joint states in MCAP and rosbag2, which complement each other; for models without
+    /// torques, the actual and then the commanded positions [default: the only one that names
+    /// joints of the robot]
     #[arg(long, hide_short_help = true, value_name = "NAME", num_args = 1..)]
     pub topic: Vec<String>,
-    /// Names of the joints in MCAP and rosbag2, in the robot's order [default: the robot's names];
-    /// without a robot, the joints that are read of any log
+    /// Names of the joints in MCAP and rosbag2, in the robot's order; without a robot, the joints
+    /// that are read of any log [default: the robot's names, or all]
     #[arg(long, hide_short_help = true, value_name = "NAME,..", value_delimiter = ',')]
     pub joints: Vec<String>,
     /// Topic that marks runs while it is not empty, true or not 0 [default: each log is one

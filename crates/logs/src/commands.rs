@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::io::Write as _;
 use std::path::Path;
 
-use reachtube_recordings::{LogSettings, LogTime, is_commanded};
+use reachtube_recordings::{ColumnSettings, LogSettings, LogTime, Wanted, is_commanded};
 
 use crate::align::{Place, median_step};
 use crate::container::{Contents, Role, Topic, WantedTopics, names_of};
@@ -14,11 +14,16 @@ use crate::log::LogOptions;
 use crate::named_series::{AllSeries, NamedSeries};
 
 /// The commanded and actual positions of a log.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Commands {
-    /// Comma-separated columns: the time in ns, and for each joint the commanded and the actual
-    /// position, rad or m. [`parse_logged`](reachtube_recordings::parse_logged) reads them.
+    /// The names of the joints in the log.
+    pub joints: Vec<String>,
+    /// Comma-separated columns: the time, and for each joint, by its number from 0, the commanded
+    /// and the actual position, which a plan does not have.
+    /// [`parse_logged`](reachtube_recordings::parse_logged) reads them.
     pub text: Vec<u8>,
+    /// The units of the columns: ns, and rad or m.
+    pub columns: ColumnSettings,
     /// Notes for the user: which topics were taken, and what was left out.
     pub notes: Vec<String>,
 }
@@ -27,9 +32,9 @@ pub struct Commands {
 /// folder with the parts of one bag.
 ///
 /// They are in one topic of `control_msgs/msg/JointTrajectoryControllerState`, or in two topics of
-/// `sensor_msgs/msg/JointState`, of which the name of one speaks of commands. Samples of two topics
-/// are joined at the stamps of the one with the longer steps, with the other straight between its
-/// samples. Only topics count that name all of `joints`. If a log has several, the settings name
+/// `sensor_msgs/msg/JointState`, of which the name of one contains a word for commands. Samples of two
+/// topics are joined at the stamps of the one with the longer steps; the other is interpolated
+/// linearly. [`Wanted::Plan`] reads the commands alone, at their own stamps. Only topics count that name all of `joints`. If a log has several, the settings name
 /// topics or joints.
 ///
 /// # Errors
@@ -38,38 +43,70 @@ pub struct Commands {
 ///   if a part of it cannot.
 /// - [`Error::NoTopic`], [`Error::TopicType`], [`Error::NoCommands`], [`Error::SeveralTopics`],
 ///   [`Error::ZeroStamps`] and [`Error::Setting`] if the topics do not fit the settings.
-pub fn read_commands(path: &Path, settings: &LogSettings, joints: &[String]) -> Result<Commands> {
+pub fn read_commands(
+    path: &Path,
+    settings: &LogSettings,
+    joints: &[String],
+    wanted: Wanted,
+) -> Result<Commands> {
     if settings.marker.is_some() {
         return Err(Error::Setting(
             "--marker cuts logs with torques into runs; leave it out for commands".into(),
         ));
     }
     // The robot may have other names than the log.
-    let (joints, names) = match joints {
-        [] => (settings.joints.clone(), &settings.joints[..]),
-        names => (LogOptions::new(settings, names)?.joints, names),
+    let joints = match joints {
+        [] => settings.joints.clone(),
+        names => LogOptions::new(settings, names)?.joints,
     };
     let mut logged = PositionLog::read(path, settings)?;
     logged.all.series.retain(|of| joints.iter().all(|joint| of.names.contains(joint)));
-    let (mut log, mut notes) = logged.chosen(path)?;
+    let mut log = logged.chosen(path, wanted == Wanted::Plan)?;
     let series = &mut log.series;
     if settings.time == LogTime::Header
         && series.iter().any(|of| of.times.iter().all(|t| t[0] == 0))
     {
         return Err(Error::ZeroStamps { path: path.into(), topic: log.topics.join(", ") });
     }
-    series.iter_mut().for_each(NamedSeries::sort);
-    let (text, left_out) = log.text(&joints, names);
-    notes.push(format!("commanded and actual positions come from {}", log.topics.join(", ")));
+    let moved: usize = series.iter_mut().map(NamedSeries::sort).sum();
+    if let [command, state] = &series[..] {
+        let late = [command, state].into_iter().find(|of| !of.increases());
+        if let Some(of) = late {
+            return Err(Error::Setting(format!(
+                "{}: the stamps of {} do not increase, so that it cannot be joined with another \
+                 topic; --time log takes the times at which the log received the messages",
+                path.display(),
+                logged.topics[of.topic]
+            )));
+        }
+    }
+    let is_of = |topic: &&usize| series.iter().any(|of| of.topic == **topic);
+    let incomplete = logged.all.incomplete.iter().filter(is_of).count();
+    let (names, others) = log.joints(&joints);
+    let (text, left_out) = log.text(&names);
     let counted = [
-        (logged.all.incomplete, "messages have no position for each of their joints"),
-        (left_out, "samples have no commanded or no actual position within half a step"),
+        (incomplete, "messages have no position for each of their joints, and are not used"),
+        (moved, "messages were sorted by the times of receipt, or are there twice"),
+        (left_out, "samples have no partner within half a step, and are not used"),
     ];
     let counted = counted.into_iter().filter(|(count, _)| *count > 0);
-    notes.extend(counted.map(|(count, what)| format!("{count} {what}, and are not used")));
+    let mut notes = std::mem::take(&mut logged.notes);
+    notes.push(format!("positions come from {}", log.topics.join(", ")));
+    notes.extend(counted.map(|(count, what)| format!("{count} {what}")));
+    if !others.is_empty() {
+        notes.push(format!("{} are in one topic only, and are not used", others.join(", ")));
+    }
     let named = |note: String| format!("{}: {note}", path.display());
-    Ok(Commands { text, notes: notes.into_iter().map(named).collect() })
+    Ok(Commands {
+        joints: names,
+        text,
+        columns: UNITS.parse().map_err(Error::Setting)?,
+        notes: notes.into_iter().map(named).collect(),
+    })
 }
+
+/// The units of ROS.
+const UNITS: &str = "angle=rad,time_unit=ns";
 
 /// What was read of a log.
 struct PositionLog {
@@ -82,10 +119,12 @@ struct PositionLog {
     is_named: bool,
 }
 
-/// The series with commanded and actual positions: one that has both, or first the commands.
+/// The series with commanded and actual positions: one that has both, or first the commands. A plan
+/// has the commands alone.
 struct ChosenSeries {
     series: Vec<NamedSeries>,
     topics: Vec<String>,
+    is_plan: bool,
 }
 
 impl PositionLog {
@@ -125,8 +164,23 @@ impl PositionLog {
         Ok(logged)
     }
 
-    /// Returns the series of commanded and actual positions, and notes of the reading.
-    fn chosen(&mut self, path: &Path) -> Result<(ChosenSeries, Vec<String>)> {
+    /// Returns the series of commanded and actual positions, or for a plan of commands alone.
+    fn chosen(&mut self, path: &Path, is_plan: bool) -> Result<ChosenSeries> {
+        let found = self.pair(path, is_plan)?;
+        let unused = self.topics.iter().filter(|topic| !found.topics.contains(topic));
+        let unused: Vec<&str> = unused.map(String::as_str).collect();
+        if self.is_named && !is_plan && !unused.is_empty() {
+            return Err(Error::Setting(format!(
+                "--topic names {}, which have no positions of the joints that {} does not have; \
+                 leave them out",
+                unused.join(", "),
+                found.topics.join(", ")
+            )));
+        }
+        Ok(found)
+    }
+
+    fn pair(&mut self, path: &Path, is_plan: bool) -> Result<ChosenSeries> {
         let (both, single): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.all.series).into_iter().partition(|of| of.has_commands);
         let of_topic = |of: &NamedSeries| self.topics[of.topic].clone();
@@ -134,18 +188,19 @@ impl PositionLog {
             path: path.into(),
             topics: all.iter().map(of_topic).collect(),
         };
-        let notes = std::mem::take(&mut self.notes);
-        if let [_] = both[..] {
-            let topics = both.iter().map(of_topic).collect();
-            return Ok((ChosenSeries { series: both, topics }, notes));
-        } else if !both.is_empty() {
-            return Err(several(&both));
+        let chosen = |series: Vec<NamedSeries>| {
+            let topics = series.iter().map(of_topic).collect();
+            Ok(ChosenSeries { series, topics, is_plan })
+        };
+        match &both[..] {
+            [] => {}
+            [_] => return chosen(both),
+            several_controllers => return Err(several(several_controllers)),
         }
-        let speaks_of_commands = single.iter().any(|of| is_commanded(&self.topics[of.topic]));
-        let is_command = |of: &NamedSeries| match speaks_of_commands {
-            true => is_commanded(&self.topics[of.topic]),
-            // The second one of two named topics.
-            false => self.is_named && of.topic == 1,
+        // The second one of two named topics.
+        let is_command = |of: &NamedSeries| match self.is_named {
+            true => of.topic == 1,
+            false => is_commanded(&self.topics[of.topic]),
         };
         let (commands, states): (Vec<_>, Vec<_>) = single.into_iter().partition(is_command);
         let pairs = commands.iter().flat_map(|command| states.iter().map(move |of| (command, of)));
@@ -153,13 +208,10 @@ impl PositionLog {
             command.names.iter().any(|name| state.names.contains(name))
         };
         let pairs: Vec<_> = pairs.filter(shares).collect();
-        match pairs[..] {
-            [(command, state)] => {
-                let series = vec![command.clone(), state.clone()];
-                let topics = series.iter().map(of_topic).collect();
-                Ok((ChosenSeries { series, topics }, notes))
-            }
-            [] => Err(Error::NoCommands {
+        match (&commands[..], &states[..], &pairs[..]) {
+            ([alone], _, _) | ([], [alone], _) if is_plan => chosen(vec![alone.clone()]),
+            (_, _, [(command, state)]) => chosen(vec![(*command).clone(), (*state).clone()]),
+            (_, _, []) => Err(Error::NoCommands {
                 path: path.into(),
                 problem: match states.is_empty() {
                     true => "no topic has actual positions of the joints".into(),
@@ -173,29 +225,38 @@ impl PositionLog {
 }
 
 impl ChosenSeries {
-    /// Returns the columns of some joints, or of all, as text with other names, and the number of
-    /// samples that have no partner.
-    fn text(&self, joints: &[String], called: &[String]) -> (Vec<u8>, usize) {
+    /// Returns the joints that are read: the given ones, or all that have both positions; and the
+    /// other ones.
+    fn joints(&self, given: &[String]) -> (Vec<String>, Vec<String>) {
+        if !given.is_empty() {
+            return (given.to_vec(), vec![]);
+        }
+        let mut all: Vec<String> = Vec::new();
+        for name in self.series.iter().rev().flat_map(|of| &of.names) {
+            if !all.contains(name) {
+                all.push(name.clone());
+            }
+        }
+        all.into_iter().partition(|name| self.series.iter().all(|of| of.names.contains(name)))
+    }
+
+    /// Returns the columns of some joints as text, and the number of samples that have no partner.
+    fn text(&self, names: &[String]) -> (Vec<u8>, usize) {
         let last = self.series.last().expect("there are one or two");
-        let is_in_all =
-            |name: &&String| self.series.iter().all(|series| series.names.contains(*name));
-        let names: Vec<String> = match joints {
-            [] => last.names.iter().filter(is_in_all).cloned().collect(),
-            joints => joints.to_vec(),
-        };
-        let called = if called.is_empty() { &names[..] } else { called };
         // Actual positions count where both have the same steps.
         let step = |of: &&NamedSeries| median_step(&of.stamps()).unwrap_or_default();
         let stamps = self.series.iter().max_by_key(step).unwrap_or(last).stamps();
-        let columns: Vec<Vec<usize>> = self.series.iter().map(|of| of.columns(&names)).collect();
+        let mut columns: Vec<Vec<usize>> = self.series.iter().map(|of| of.columns(names)).collect();
+        let mut kinds = vec!["commanded", "actual"];
+        if self.is_plan {
+            columns.iter_mut().for_each(|of| of.truncate(names.len()));
+            kinds.pop();
+        }
         let places: Vec<Vec<Place>> = self.series.iter().map(|of| of.places(&stamps)).collect();
-        let mut text = b"t [ns]".to_vec();
-        for kind in ["commanded", "actual"] {
-            for name in called {
-                let plain = name.replace([',', ';', '\t', '"', '\n', '\r'], " ");
-                // Writing to memory does not fail.
-                let _ = write!(text, ",{kind}_position {plain} [rad]");
-            }
+        let mut text = b"t".to_vec();
+        for kind in kinds {
+            // Writing to memory does not fail.
+            (0..names.len()).for_each(|joint| drop(write!(text, ",{kind}_position_{joint}")));
         }
         text.push(b'\n');
         let mut left_out = 0;

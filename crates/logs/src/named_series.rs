@@ -26,8 +26,9 @@ pub(crate) struct NamedSeries {
 #[derive(Debug, Default)]
 pub(crate) struct AllSeries {
     pub(crate) series: Vec<NamedSeries>,
-    /// Number of messages that do not have a position for each of their joints.
-    pub(crate) incomplete: usize,
+    /// The topic of each message that does not have a position for each of its joints, or names one
+    /// twice.
+    pub(crate) incomplete: Vec<usize>,
 }
 
 impl AllSeries {
@@ -43,8 +44,12 @@ impl AllSeries {
         receipt: bool,
     ) -> Result<(), String> {
         let Positions { stamp, names, values } = Positions::decode(message.data, is_of_controller)?;
-        if names.is_empty() || values.iter().any(|of| of.len() != names.len()) {
-            self.incomplete += 1;
+        let is_repeated = |(at, name): (usize, &&str)| names[..at].contains(name);
+        if names.is_empty()
+            || values.iter().any(|of| of.len() != names.len())
+            || names.iter().enumerate().any(is_repeated)
+        {
+            self.incomplete.push(topic);
             return Ok(());
         }
         let time = [if receipt { message.log_time } else { stamp }, message.log_time];
@@ -53,7 +58,7 @@ impl AllSeries {
         let index = known.unwrap_or(self.series.len());
         if known.is_none() {
             if self.series.iter().filter(|of| of_topic(of)).count() >= MOST_SETS {
-                self.incomplete += 1;
+                self.incomplete.push(topic);
                 return Ok(());
             }
             let names = names.iter().map(|name| (*name).to_string()).collect();
@@ -84,13 +89,17 @@ impl NamedSeries {
         if self.has_commands { 2 * self.names.len() } else { self.names.len() }
     }
 
+    pub(crate) fn increases(&self) -> bool {
+        self.times.windows(2).all(|pair| pair[0][0] < pair[1][0])
+    }
+
     /// Brings samples into the order of their times, or else of receipt, and omits repetitions
-    /// of a sample.
-    pub(crate) fn sort(&mut self) {
-        let increases = |times: &[[i64; 2]]| times.windows(2).all(|pair| pair[0][0] < pair[1][0]);
-        if increases(&self.times) {
-            return;
+    /// of a sample. Returns how many came late or were repeated.
+    pub(crate) fn sort(&mut self) -> usize {
+        if self.increases() {
+            return 0;
         }
+        let late = self.times.windows(2).filter(|pair| pair[1][0] <= pair[0][0]).count();
         let width = self.width();
         let mut order: Vec<usize> = (0..self.times.len()).collect();
         order.sort_by_key(|index| self.times[*index][1]);
@@ -99,6 +108,7 @@ impl NamedSeries {
         let values = order.iter().flat_map(row).copied().collect();
         self.times = order.iter().map(|index| self.times[*index]).collect();
         self.values = values;
+        late
     }
 
     /// Returns the times of the samples, ns.

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use mutation::attack;
 use reachtube_logs::{Log, LogOptions};
+use reachtube_recordings::Wanted;
 use support::*;
 
 /// Most memory that all inputs together may add, KiB. One chunk may have 256 MiB, twice while it
@@ -37,6 +38,7 @@ fn at_end(messages: &[Message]) -> i64 {
 /// Reads an input with and without recovery.
 fn read_all(path: &Path, bytes: &[u8]) {
     std::fs::write(path, bytes).unwrap();
+    let _ = reachtube_logs::read_commands(path, &Default::default(), &[], Wanted::Plan);
     for recover in [false, true] {
         let marker = Some("/marker".into());
         let log = Log::read(path, &LogOptions { recover, marker, ..options() });

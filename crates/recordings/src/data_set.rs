@@ -58,7 +58,7 @@ impl DataSet {
         let bytes = reachtube_files::read(&index, remedy)?;
         let runs = read_index(&root, &index, &bytes).map_err(Error::Defects)?;
         let listed: BTreeSet<PathBuf> = runs.iter().map(|run| root.join(&run.file)).collect();
-        let unlisted = table_files(&root)
+        let unlisted = csv_files(&root)
             .into_iter()
             .filter(|path| *path != index && !listed.contains(path))
             .collect();
@@ -126,14 +126,14 @@ impl DataSet {
 }
 
 /// Returns the CSV files in a folder and the folders in it, in the order of their paths.
-fn table_files(folder: &Path) -> Vec<PathBuf> {
+fn csv_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
     let mut files: Vec<PathBuf> = entries
         .flatten()
         .flat_map(|entry| {
             let path = entry.path();
             match entry.file_type() {
-                Ok(kind) if kind.is_dir() => table_files(&path),
+                Ok(kind) if kind.is_dir() => csv_files(&path),
                 Ok(_)
                     if path
                         .extension()

@@ -135,7 +135,8 @@ pub struct NeedsOfMotions {
 pub struct RunOfModel {
     /// The file.
     pub file: String,
-    /// Its SHA-256.
+    /// The SHA-256 of its files; of its rows, if a file has several recordings; or of the positions
+    /// that a log has in messages.
     pub sha256: String,
     /// The number of its samples.
     pub samples: usize,

@@ -41,8 +41,12 @@ impl Plan {
                 if samples < FEWEST_SAMPLES {
                     return Err(Error::Short { file, samples });
                 }
-                notes.extend(logged.notes);
-                notes.extend(plan.long_step(model.step));
+                let own = logged.notes.into_iter().chain(plan.long_step(model.step));
+                own.for_each(|note| {
+                    if !notes.contains(&note) {
+                        notes.push(note);
+                    }
+                });
                 plans.push(plan);
             }
         }

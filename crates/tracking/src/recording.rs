@@ -2,7 +2,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use std::path::{Path, PathBuf};
 
 use reachtube_files::hex;
-use reachtube_logs::{Commands, LogFiles, read_commands};
+use reachtube_logs::{LogFiles, read_commands};
 use reachtube_recordings::{
     Axis, ColumnSettings, GapLimit, LogSettings, Logged, LoggedOptions, Wanted, parse_logged,
     read_logged_runs,
@@ -30,7 +30,8 @@ pub struct TrackedRun {
     pub command: Vec<f64>,
     /// Actual positions, row-major K x n, rad.
     pub actual: Vec<f64>,
-    /// SHA-256 of the files.
+    /// SHA-256 of the files; of the rows, if a file has several recordings; or of the positions that
+    /// a log has in messages.
     pub sha256: String,
 }
 
@@ -112,11 +113,15 @@ impl<'a> Reading<'a> {
         };
         let refused = reachtube_recordings::Error::Defects;
         let plan = |(file, logged): (PathBuf, Logged)| (self.plan(file, &logged), logged);
-        let runs = match log {
+        let runs: Vec<(PathBuf, Logged)> = match log {
             LogFiles::Csv(files) => {
                 let runs = read_logged_runs(files, &options).map_err(refused)?;
                 let name = |run: Option<String>| match run {
-                    Some(run) => format!("{}:{run}", files[0].display()).into(),
+                    Some(run) => files[0].with_file_name(format!(
+                        "{}_{run}.{}",
+                        files[0].file_stem().unwrap_or_default().display(),
+                        files[0].extension().unwrap_or_default().display()
+                    )),
                     None => files[0].clone(),
                 };
                 runs.into_iter().map(|(run, logged)| (name(run), logged)).collect()
@@ -124,11 +129,14 @@ impl<'a> Reading<'a> {
             LogFiles::Container(path) => {
                 let axes = self.axes.unwrap_or_default().iter();
                 let joints: Vec<String> = axes.map(|axis| axis.name.clone()).collect();
-                let Commands { text, notes } = read_commands(path, self.log, &joints)?;
-                // The text has the names of the robot.
-                let options = LoggedOptions { joints: &[], ..options };
-                let mut logged = parse_logged(path, text, &options).map_err(refused)?;
-                logged.notes.splice(..0, notes);
+                let found = read_commands(path, self.log, &joints, wanted)?;
+                // The text has numbers in place of names.
+                let options = LoggedOptions { joints: &[], columns: &found.columns, ..options };
+                let mut logged = parse_logged(path, found.text, &options).map_err(refused)?;
+                logged.notes.splice(..0, found.notes);
+                if let Some(understood) = &mut logged.understood {
+                    understood.joints = found.joints;
+                }
                 vec![(path.clone(), logged)]
             }
         };

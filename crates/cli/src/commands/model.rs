@@ -97,7 +97,7 @@ pub(crate) fn run(args: &Arguments, json: bool) -> Result<Outcome> {
 fn under_controller(args: &Arguments, json: bool) -> Result<Outcome> {
     let Arguments { horizon, held_out, gains, fit, log, .. } = args;
     let is_made = !(held_out.is_empty() && gains.is_empty() && fit.is_empty());
-    if horizon.is_some() || is_made {
+    if horizon.is_some() || is_made || log.marker.is_some() {
         return Err(Error::setting(NO_TORQUE));
     }
     let of = TrackingArguments {

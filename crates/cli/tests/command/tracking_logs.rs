@@ -39,6 +39,33 @@ fn lab() -> Lab {
 }
 
 #[test]
+fn names_of_joints_in_messages_are_kept_as_they_are() {
+    let (lab, names) = (Lab::new(), ["fr3_joint1", "tool_lift_d"]);
+    std::fs::create_dir_all(lab.path("logs")).unwrap();
+    for number in 1..=4 {
+        let log = log(number);
+        let messages = log.times.iter().enumerate().flat_map(|(k, time)| {
+            let stamp = SECOND + (time * 1e9).round() as i64;
+            [("/joint_states", log.actual[k]), ("/joint_commands", log.command[k])].map(
+                |(topic, values)| {
+                    let data = State::new(stamp, &names, [&values, &[], &[]]).encode(false);
+                    Message::new(topic, JOINT_STATE, stamp, data)
+                },
+            )
+        });
+        let messages: Vec<Message> = messages.collect();
+        lab.write(&format!("logs/{number}.mcap"), mcap_bytes("none", &messages));
+    }
+    lab.run("model --data logs --out arm").exits(0);
+    let joints = numbers(&lab, "arm");
+    assert_eq!([0, 1].map(|joint| &joints[0][joint]["name"]), names);
+    // Columns of CSV files have nothing to say about messages.
+    lab.run("check --model arm/model.json --data logs").exits(0);
+    lab.run("model --data logs --columns angle=deg,time=t_2 --out degrees").exits(0);
+    assert_eq!(numbers(&lab, "degrees"), joints);
+}
+
+#[test]
 fn joints_that_are_chosen_by_number_are_found_in_other_logs() {
     let lab = Lab::new();
     std::fs::create_dir_all(lab.path("logs")).unwrap();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use reachtube_logs::{Commands, Error, read_commands};
 use reachtube_recordings::{
-    ColumnSettings, GapLimit, LogSettings, LogTime, Logged, LoggedOptions, Wanted, parse_logged,
+    GapLimit, LogSettings, LogTime, Logged, LoggedOptions, Wanted, parse_logged,
 };
 
 use crate::support::*;
@@ -54,18 +54,26 @@ fn positions(topic: &str, samples: &[(i64, f64)]) -> Vec<Message> {
     samples.iter().map(message).collect()
 }
 
-fn parsed(path: &Path, commands: Commands) -> Logged {
-    let columns = ColumnSettings::default();
+fn parsed_as(path: &Path, commands: Commands, wanted: Wanted) -> Logged {
     let options = LoggedOptions {
         robot: None,
         joints: &[],
-        columns: &columns,
+        columns: &commands.columns,
         gains: false,
-        wanted: Wanted::Commands,
+        wanted,
         gap_limit: GapLimit::Seconds(f64::INFINITY),
         until: None,
     };
     parse_logged(path, commands.text, &options).unwrap()
+}
+
+fn parsed(path: &Path, commands: Commands) -> Logged {
+    parsed_as(path, commands, Wanted::Commands)
+}
+
+fn read(path: &Path, settings: &LogSettings, joints: &[&str]) -> Result<Commands, Error> {
+    let joints: Vec<String> = joints.iter().map(|joint| (*joint).into()).collect();
+    read_commands(path, settings, &joints, Wanted::Commands)
 }
 
 #[test]
@@ -75,10 +83,11 @@ fn a_controllers_state_has_both_positions() {
     // A log may have a message twice, and one later than it was sent.
     messages.insert(7, messages[6].clone());
     for path in [mcap(folder.path(), "zstd", &messages), bag(folder.path(), &messages)] {
-        let commands = read_commands(&path, &LogSettings::default(), &[]).unwrap();
+        let commands = read(&path, &LogSettings::default(), &[]).unwrap();
         assert!(commands.notes[0].contains("/arm_controller/state"), "{:?}", commands.notes);
+        assert!(commands.notes[1].contains("1 messages were sorted"), "{:?}", commands.notes);
+        assert_eq!(commands.joints, ["a", "b"]);
         let logged = parsed(&path, commands);
-        assert_eq!(logged.understood.as_ref().unwrap().joints, ["a", "b"]);
         assert_eq!((logged.run.len(), logged.run.start), (50, 1.7e9));
         for k in 0..50 {
             let a = 1e-3 * k as f64;
@@ -99,9 +108,9 @@ fn two_topics_are_joined_at_the_slower_one() {
     let mut messages = positions("/joint_states", &states);
     messages.extend(positions("/joint_commands", &commands));
     let path = mcap(folder.path(), "none", &messages);
-    let found = read_commands(&path, &LogSettings::default(), &[]).unwrap();
+    let found = read(&path, &LogSettings::default(), &[]).unwrap();
     assert!(found.notes[0].contains("/joint_commands, /joint_states"), "{:?}", found.notes);
-    assert!(found.notes[1].contains("1 samples have no commanded"), "{:?}", found.notes);
+    assert!(found.notes[1].contains("1 samples have no partner"), "{:?}", found.notes);
     let logged = parsed(&path, found);
     assert_eq!(logged.run.len(), 39);
     for k in 0..39 {
@@ -109,6 +118,10 @@ fn two_topics_are_joined_at_the_slower_one() {
         assert!((logged.run.q(k)[0] - expected).abs() < 1e-12, "{k}");
         assert!((logged.command[k] - expected).abs() < 1e-12, "{k}");
     }
+    // A plan has the commands alone, at their own stamps.
+    let plan = read_commands(&path, &LogSettings::default(), &[], Wanted::Plan).unwrap();
+    let plan = parsed_as(&path, plan, Wanted::Plan);
+    assert_eq!((plan.run.len(), plan.run.q(39)), (40, &[2e-2 * 39.0][..]));
     // Names of topics that do not tell are given, the commands last.
     let swapped = [("/joint_states", "/x"), ("/joint_commands", "/y")];
     for message in &mut messages {
@@ -116,11 +129,11 @@ fn two_topics_are_joined_at_the_slower_one() {
         message.topic = (*name).into();
     }
     let path = mcap(folder.path(), "lz4", &messages);
-    let error = read_commands(&path, &LogSettings::default(), &[]).unwrap_err().to_string();
+    let error = read(&path, &LogSettings::default(), &[]).unwrap_err().to_string();
     assert!(error.contains("no topic has commanded positions"), "{error}");
     assert!(error.contains("--topic STATE COMMAND") && error.contains("/x"), "{error}");
     let settings = LogSettings { topic: vec!["/x".into(), "/y".into()], ..LogSettings::default() };
-    let named = parsed(&path, read_commands(&path, &settings, &[]).unwrap());
+    let named = parsed(&path, read(&path, &settings, &[]).unwrap());
     assert_eq!((named.run.states, named.command), (logged.run.states, logged.command));
 }
 
@@ -134,24 +147,21 @@ fn the_joints_decide_among_several_controllers() {
     };
     messages.extend((1..20).map(gripper));
     let path = mcap(folder.path(), "zstd", &messages);
-    let read = |settings: &LogSettings, joints: &[&str]| {
-        let joints: Vec<String> = joints.iter().map(|joint| (*joint).into()).collect();
-        read_commands(&path, settings, &joints)
-    };
+    let read = |settings: &LogSettings, joints: &[&str]| read(&path, settings, joints);
     let none = LogSettings::default();
     let error = read(&none, &[]).unwrap_err();
     assert!(matches!(&error, Error::SeveralTopics { topics, .. } if topics.len() == 2), "{error}");
-    let header = |commands: Commands| {
-        let text = String::from_utf8(commands.text).unwrap();
-        text.lines().next().unwrap().to_string()
-    };
-    let of_robot = header(read(&none, &["b", "a"]).unwrap());
-    assert!(of_robot.starts_with("t [ns],commanded_position b [rad],commanded_position a"));
+    let of_robot = read(&none, &["b", "a"]).unwrap();
+    assert_eq!(of_robot.joints, ["b", "a"]);
+    assert_eq!(parsed(&path, of_robot).command[2..4], [-1e-3, 1e-3]);
     let by_topic = LogSettings { topic: vec!["/gripper/state".into()], ..none.clone() };
-    assert!(header(read(&by_topic, &[]).unwrap()).contains("actual_position finger"));
-    // The log's names in the robot's order, and the robot's names in the header.
+    assert_eq!(read(&by_topic, &[]).unwrap().joints, ["finger"]);
+    let both =
+        LogSettings { topic: vec!["/arm/state".into(), "/gripper/state".into()], ..none.clone() };
+    assert!(matches!(read(&both, &["a", "b"]), Err(Error::Setting(_))));
+    // The log's names in the robot's order.
     let renamed = LogSettings { joints: vec!["b".into(), "a".into()], ..none.clone() };
-    assert!(header(read(&renamed, &["j1", "j2"]).unwrap()).contains("commanded_position j1"));
+    assert_eq!(read(&renamed, &["j1", "j2"]).unwrap().joints, ["b", "a"]);
     let absent = read(&none, &["elbow"]).unwrap_err();
     assert!(matches!(absent, Error::NoCommands { .. }), "{absent}");
     let marked = LogSettings { marker: Some("/run".into()), ..none };
@@ -167,17 +177,43 @@ fn times_may_be_those_of_receipt() {
         message.data[4..12].fill(0);
     }
     let path = mcap(folder.path(), "none", &messages);
-    let error = read_commands(&path, &LogSettings::default(), &[]).unwrap_err();
+    let error = read(&path, &LogSettings::default(), &[]).unwrap_err();
     assert!(matches!(error, Error::ZeroStamps { .. }), "{error}");
     let settings = LogSettings { time: LogTime::Receipt, ..LogSettings::default() };
-    let logged = parsed(&path, read_commands(&path, &settings, &[]).unwrap());
+    let logged = parsed(&path, read(&path, &settings, &[]).unwrap());
     assert_eq!(logged.run.times, [0.0, 0.001, 0.002, 0.003, 0.004]);
     // A cut message, and one with too few positions.
     messages[3].data.truncate(40);
     let path = mcap(folder.path(), "none", &messages);
-    assert!(matches!(read_commands(&path, &settings, &[]), Err(Error::Damaged(_))));
+    assert!(matches!(read(&path, &settings, &[]), Err(Error::Damaged(_))));
     messages[3].data = controller_state(START, &["a", "b"], [&[0.0, 0.0], &[0.0]]);
     let path = mcap(folder.path(), "none", &messages);
-    let commands = read_commands(&path, &settings, &[]).unwrap();
+    let commands = read(&path, &settings, &[]).unwrap();
     assert!(commands.notes[1].contains("1 messages have no position"), "{:?}", commands.notes);
+}
+
+#[test]
+fn what_is_not_used_is_counted_and_what_cannot_be_joined_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let samples: Vec<(i64, f64)> = (0..20).map(|k| (k * 10_000_000, 0.1)).collect();
+    let mut messages = positions("/joint_states", &samples);
+    let commands = |stamps: &dyn Fn(i64) -> i64| -> Vec<Message> {
+        let state = |k: i64| State::new(START + stamps(k), &["a", "x"], [&[0.1, 0.2], &[], &[]]);
+        let message =
+            |state: State| Message::new("/joint_commands", JOINT_STATE, START, state.encode(false));
+        (0..20).map(|k| message(state(k))).collect()
+    };
+    messages.extend(commands(&|k| 10_000_000 * k + 1));
+    let twice = State::new(START, &["a", "a"], [&[0.1, 0.2], &[], &[]]).encode(false);
+    messages.push(Message::new("/joint_states", JOINT_STATE, START, twice));
+    let path = mcap(folder.path(), "none", &messages);
+    let notes = read(&path, &LogSettings::default(), &[]).unwrap().notes.join("\n");
+    for part in ["1 messages have no position", "x are in one topic only"] {
+        assert!(notes.contains(part), "{notes}");
+    }
+    messages.truncate(20);
+    messages.extend(commands(&|k| 10_000_000 * (k % 7) + 1));
+    let path = mcap(folder.path(), "none", &messages);
+    let error = read(&path, &LogSettings::default(), &[]).unwrap_err().to_string();
+    assert!(error.contains("the stamps of /joint_commands do not increase"), "{error}");
 }

@@ -177,6 +177,12 @@ impl Finder<'_> {
         };
         let found = by_pattern(&self.columns, pattern, self.options.columns.first);
         let count = joints.names.len();
+        if self.options.robot.is_none() && count > 0 && count < found.len() {
+            return match joints.matched(&found) {
+                Ok((chosen, _)) => Ok(Some(chosen)),
+                Err(mismatch) => Err(self.mismatch(Quantity::Position, mismatch, &found, joints)),
+            };
+        }
         if found.is_empty() || (count > 0 && found.len() != count) {
             let problem = format!(
                 "columns.{key} = \"{pattern}\" names {} columns of the {}; the header has {}",

@@ -13,7 +13,7 @@ pub(super) struct Content {
     /// The SHA-256 of the file.
     pub digest: Sha256,
     /// What is missing in the text.
-    pub note: Option<String>,
+    pub notes: Vec<String>,
 }
 
 pub(super) fn content(path: &Path) -> Result<Content, Vec<Defect>> {
@@ -25,12 +25,12 @@ pub(super) fn content(path: &Path) -> Result<Content, Vec<Defect>> {
     })?;
     let digest = Sha256::new_with_prefix(&bytes);
     if !bytes.starts_with(MAGIC) {
-        return Ok(Content { text: bytes, digest, note: None });
+        return Ok(Content { text: bytes, digest, notes: vec![] });
     }
-    let (text, note) = text_of(path, bytes).map_err(|problem| {
+    let (text, notes) = text_of(path, bytes).map_err(|problem| {
         refused(format!("the Parquet file cannot be read: {problem}"), "write it again")
     })?;
-    Ok(Content { text, digest, note })
+    Ok(Content { text, digest, notes })
 }
 
 /// The bytes that a Parquet file starts with.
@@ -40,6 +40,6 @@ const MAGIC: &[u8] = b"PAR1";
 use super::parquet::text_of;
 
 #[cfg(not(feature = "parquet"))]
-fn text_of(_: &Path, _: Vec<u8>) -> Result<(Vec<u8>, Option<String>), &'static str> {
+fn text_of(_: &Path, _: Vec<u8>) -> Result<(Vec<u8>, Vec<String>), &'static str> {
     Err("its format is not built in; build with the feature parquet")
 }

@@ -29,7 +29,7 @@ pub fn table_files(path: &Path) -> Result<Vec<PathBuf>, reachtube_files::Error> 
     let unreadable = |source| reachtube_files::Error::Read {
         path: path.to_path_buf(),
         source,
-        remedy: "give a CSV file of one recording, or a folder of them",
+        remedy: "give a CSV or Parquet file, or a folder of them",
     };
     if !path.metadata().map_err(unreadable)?.is_dir() {
         return Ok(vec![path.to_path_buf()]);

@@ -47,7 +47,7 @@ impl Joints {
         let joints = options.robot?;
         let names: Vec<String> = joints.iter().map(|joint| joint.name.clone()).collect();
         let given = options.joints;
-        if given.len() == names.len() && !given.iter().any(|name| names.contains(name)) {
+        if given.len() == names.len() && !given.iter().all(|name| names.contains(name)) {
             // The log has other names than the robot.
             let places = (0..given.len()).collect();
             return Some(Self { names: given.to_vec(), places, first: options.columns.first });
@@ -68,7 +68,12 @@ impl Joints {
         } else if let Some(Err(Mismatch::Missing(missing))) = commanded {
             missing.iter().rev().for_each(|joint| drop(self.names.remove(*joint)));
         }
-        self.places = (0..self.names.len()).collect();
+        // Numbered columns are in the order of their numbers.
+        let number = |name: &String| name.parse::<usize>().ok();
+        self.places = match self.names.iter().map(number).collect::<Option<Vec<_>>>() {
+            Some(all) => all.iter().map(|own| all.iter().filter(|n| *n < own).count()).collect(),
+            None => (0..self.names.len()).collect(),
+        };
     }
 
     /// Returns one of the columns for each joint: by the joints' names, or else by numbers.

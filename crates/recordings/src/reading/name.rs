@@ -105,7 +105,7 @@ impl ColumnName {
     }
 }
 
-/// Returns whether a name, of a column or a topic, speaks of commands in place of measurements.
+/// Returns whether a name, of a column or a topic, contains a word for commands.
 #[must_use]
 pub fn is_commanded(name: &str) -> bool {
     ColumnName::new(name).origin == Origin::Target

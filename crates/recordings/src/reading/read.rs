@@ -14,7 +14,7 @@ use super::log::{Log, Logged, as_it_is};
 use super::options::{LoggedOptions, Wanted};
 use super::runs::{RunRows, parts};
 use super::settings::ColumnSettings;
-use crate::defect::Defect;
+use crate::defect::{Defect, DefectKind};
 
 /// Reads a recording from the files of a log: one with all quantities, or one for each quantity
 /// with the same times.
@@ -78,6 +78,11 @@ pub fn read_logged_runs(
         ([text], [dialect]) => parts(text, dialect),
         _ => None,
     };
+    if let Some(run) = parts.iter().flatten().find_map(|part| part.continues.as_deref()) {
+        let problem = format!("run {run} continues after other runs");
+        let remedy = "sort the rows by run, or give each run its own number";
+        return Err(vec![Defect::new(&files[0], None, problem, remedy)]);
+    }
     let Some(parts) = parts else {
         return Ok(vec![(None, log.logged(options)?)]);
     };
@@ -89,7 +94,18 @@ pub fn read_logged_runs(
         let logged = LogText { files, texts, dialects, digest, notes }.logged(options)?;
         Ok((Some(part.run), logged))
     };
-    parts.into_iter().map(read).collect()
+    let runs: Vec<_> = parts.into_iter().map(read).collect::<Result<_, _>>()?;
+    let units = |(_, logged): &(Option<String>, Logged)| {
+        logged.understood.as_ref().map(|of| (of.time_unit, of.angle_units))
+    };
+    if let Some((run, _)) = runs.iter().find(|run| units(run) != units(&runs[0])) {
+        let run = run.as_deref().unwrap_or_default();
+        let problem = format!("run {run} seems to have other units than the first one");
+        let remedy = "give the units: columns.angle = \"rad\" or \"deg\", and columns.time_unit";
+        let defect = Defect::new(&files[0], None, problem, remedy).of_kind(DefectKind::Units);
+        return Err(vec![defect]);
+    }
+    Ok(runs)
 }
 
 /// Reads a recording from the text of a log, which messages call `name`, as [`read_logged`] does.
@@ -130,7 +146,7 @@ impl<'a> LogText<'a> {
                 _ => digest.update(&own.text),
             }
             texts.push(own.text);
-            notes.extend(own.note);
+            notes.extend(own.notes);
         }
         let dialects = dialects(files, &texts)?;
         Ok(Self { files, texts, dialects, digest, notes })
@@ -141,7 +157,10 @@ impl<'a> LogText<'a> {
         if let Some(rate) = options.columns.rate {
             let timed = self.texts.iter().zip(&self.dialects);
             self.texts = timed.map(|(text, dialect)| with_times(text, dialect, rate)).collect();
-            self.dialects = dialects(files, &self.texts)?;
+            let mut dialects = dialects(files, &self.texts)?;
+            let lines = dialects.iter_mut().zip(&self.dialects);
+            lines.for_each(|(timed, own)| timed.line = own.line);
+            self.dialects = dialects;
         }
         let mut logged = match &self.dialects[..] {
             [only]

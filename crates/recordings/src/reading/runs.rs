@@ -1,13 +1,14 @@
 //! Files that hold several recordings, one below the other.
 
-use super::dialect::{Dialect, end_of_line};
+use super::dialect::{Dialect, end_of_line, is_plain};
 
 /// Names of columns whose values tell the recordings of a file apart.
 const RUNS: [&str; 3] = ["run", "episode", "episode_index"];
 
 /// Returns the column that tells the recordings of a file apart.
 pub(super) fn run_column(dialect: &Dialect) -> Option<usize> {
-    dialect.names.iter().position(|name| RUNS.contains(&name.as_str()))
+    let without_unit = |name: &String| name.split(['[', '(']).next().unwrap_or(name).trim();
+    dialect.names.iter().position(|name| RUNS.contains(&without_unit(name)))
 }
 
 /// The rows of one recording among others.
@@ -18,12 +19,14 @@ pub(super) struct RunRows {
     pub text: Vec<u8>,
     /// Number of rows of other recordings between them.
     pub skipped: u64,
+    /// The recording, if rows of it stand before others.
+    pub continues: Option<String>,
 }
 
 /// Divides a file into its recordings, row after row; `None` if it has only one, or has quotes.
 pub(super) fn parts(bytes: &[u8], dialect: &Dialect) -> Option<Vec<RunRows>> {
     let column = run_column(dialect)?;
-    let rows = dialect.plain_rows(bytes)?;
+    let rows = dialect.plain_rows(bytes).filter(|rows| is_plain(rows, false))?;
     let header = &bytes[..bytes.len() - rows.len()];
     let (mut parts, mut at, mut number) = (Vec::<RunRows>::new(), 0, 0);
     let mut fields = Vec::new();
@@ -33,7 +36,12 @@ pub(super) fn parts(bytes: &[u8], dialect: &Dialect) -> Option<Vec<RunRows>> {
         let run = fields.get(column).map_or(String::new(), |of| String::from_utf8_lossy(of).into());
         match parts.last_mut() {
             Some(part) if part.run == run || fields.is_empty() => part.text.extend(line),
-            _ => parts.push(RunRows { run, text: [header, line].concat(), skipped: number }),
+            None if fields.is_empty() => {}
+            _ => {
+                let continues = parts.iter().any(|part| part.run == run).then(|| run.clone());
+                let text = [header, line].concat();
+                parts.push(RunRows { run, text, skipped: number, continues });
+            }
         }
         at += line.len();
         number += 1;
@@ -65,6 +73,9 @@ mod tests {
         // A short line is of no recording; the reader names it.
         assert_eq!(divided("t,run,q\n0,1,2\n1\n").unwrap()[1], part("", "t,run,q\n1\n", 1));
         assert_eq!(divided("t,run,q\n0,1,2\n1,1,2\n"), None);
+        assert_eq!(divided("t,run,q\n\n0,1,2\n1,2,2\n").unwrap()[0].2, 1);
+        assert_eq!(divided("s,run,q\ns,-,rad\n0,1,2\n1,2,2\n").unwrap().len(), 2);
+        assert_eq!(divided("t,run,q\n0,1,\"2\"\n0,2,2\n"), None);
         assert_eq!(divided("t,q\n0,1\n0,2\n"), None);
     }
 }

@@ -122,9 +122,32 @@ fn a_folder_of_lerobot_has_a_recording_for_each_episode() {
     let (seconds, second) = ("time_unit=s".parse().unwrap(), ["1".to_string()]);
     let runs = read_logged_runs(&files, &options(&seconds, &second)).unwrap();
     assert_eq!(runs[0].1.command, [1.5, 1.6, 1.7].map(|value: f32| f64::from(value)));
+    // The recordings of a file have one unit.
+    let text = "t,episode,q,q_d\n0,1,0.1,0.1\n0.01,1,0.2,0.2\n0,2,90,90\n0.01,2,80,80\n";
+    let mixed = [folder.path().join("mixed.csv")];
+    std::fs::write(&mixed[0], text).unwrap();
+    let error = read_logged_runs(&mixed, &options(&columns, &[])).unwrap_err();
+    assert!(error[0].to_string().contains("run 2 seems to have other units"), "{}", error[0]);
+    std::fs::write(&mixed[0], text.replace(",2,80", ",1,80")).unwrap();
+    let error = read_logged_runs(&mixed, &options(&columns, &[])).unwrap_err();
+    assert!(error[0].to_string().contains("run 1 continues"), "{}", error[0]);
     // One recording has no two times 0.
     let error = read_logged(&files, &options(&columns, &[])).unwrap_err();
     assert!(error[0].to_string().contains("file-000.parquet:5: timestamp = 0"), "{}", error[0]);
+}
+
+#[test]
+fn a_changed_file_is_read_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = [lerobot(folder.path())];
+    let bytes = std::fs::read(&files[0]).unwrap();
+    let columns = ColumnSettings::default();
+    for at in 0..bytes.len() {
+        let mut changed = bytes.clone();
+        changed[at] ^= 1 << (at % 8);
+        std::fs::write(&files[0], changed).unwrap();
+        let _ = read_logged_runs(&files, &options(&columns, &[]));
+    }
 }
 
 #[test]
