@@ -21,9 +21,9 @@ pub(crate) struct LogArguments {
     /// also rate=100 (Hz) for logs without a time, first=0, time_unit=ms and angle=deg
     #[arg(long, hide_short_help = true, value_name = "KEY=VALUE,..")]
     pub columns: Option<ColumnSettings>,
-    /// Topics with joint states in MCAP and rosbag2, which complement each other; for models without
-    /// torques, the actual and then the commanded positions [default: the only one that names
-    /// joints of the robot]
+    /// Topics with joint states in MCAP and rosbag2, which complement each other; without torques,
+    /// the actual and then the commanded positions [default: the only one that names joints of the
+    /// robot]
     #[arg(long, hide_short_help = true, value_name = "NAME", num_args = 1..)]
     pub topic: Vec<String>,
     /// Names of the joints in MCAP and rosbag2, in the robot's order; without a robot, the joints

@@ -32,10 +32,10 @@ pub struct Commands {
 /// folder with the parts of one bag.
 ///
 /// They are in one topic of `control_msgs/msg/JointTrajectoryControllerState`, or in two topics of
-/// `sensor_msgs/msg/JointState`, of which the name of one contains a word for commands. Samples of two
-/// topics are joined at the stamps of the one with the longer steps; the other is interpolated
-/// linearly. [`Wanted::Plan`] reads the commands alone, at their own stamps. Only topics count that name all of `joints`. If a log has several, the settings name
-/// topics or joints.
+/// `sensor_msgs/msg/JointState`, of which the name of one contains a word for commands. Samples of
+/// two topics are joined at the stamps of the one with the longer steps; the other is interpolated
+/// linearly. [`Wanted::Plan`] reads the commands alone, at their own stamps. Only topics count that
+/// name all of `joints`. If a log has several, the settings name topics or joints.
 ///
 /// # Errors
 ///
@@ -80,22 +80,10 @@ pub fn read_commands(
             )));
         }
     }
-    let is_of = |topic: &&usize| series.iter().any(|of| of.topic == **topic);
-    let incomplete = logged.all.incomplete.iter().filter(is_of).count();
     let (names, others) = log.joints(&joints);
     let (text, left_out) = log.text(&names);
-    let counted = [
-        (incomplete, "messages have no position for each of their joints, and are not used"),
-        (moved, "messages were sorted by the times of receipt, or are there twice"),
-        (left_out, "samples have no partner within half a step, and are not used"),
-    ];
-    let counted = counted.into_iter().filter(|(count, _)| *count > 0);
     let mut notes = std::mem::take(&mut logged.notes);
-    notes.push(format!("positions come from {}", log.topics.join(", ")));
-    notes.extend(counted.map(|(count, what)| format!("{count} {what}")));
-    if !others.is_empty() {
-        notes.push(format!("{} are in one topic only, and are not used", others.join(", ")));
-    }
+    notes.extend(log.notes(&logged.all, [moved, left_out], &others));
     let named = |note: String| format!("{}: {note}", path.display());
     Ok(Commands {
         joints: names,
@@ -225,6 +213,30 @@ impl PositionLog {
 }
 
 impl ChosenSeries {
+    /// Returns notes about the topics, the numbers of samples that were moved and left out, and
+    /// joints that are not used.
+    fn notes(
+        &self,
+        all: &AllSeries,
+        [moved, left_out]: [usize; 2],
+        others: &[String],
+    ) -> Vec<String> {
+        let is_of = |topic: &&usize| self.series.iter().any(|of| of.topic == **topic);
+        let incomplete = all.incomplete.iter().filter(is_of).count();
+        let mut notes = vec![format!("positions come from {}", self.topics.join(", "))];
+        let counted = [
+            (incomplete, "messages have no position for each of their joints, and are not used"),
+            (moved, "messages were sorted by the times of receipt, or are there twice"),
+            (left_out, "samples have no partner within half a step, and are not used"),
+        ];
+        let counted = counted.into_iter().filter(|(count, _)| *count > 0);
+        notes.extend(counted.map(|(count, what)| format!("{count} {what}")));
+        if !others.is_empty() {
+            notes.push(format!("{} are in one topic only, and are not used", others.join(", ")));
+        }
+        notes
+    }
+
     /// Returns the joints that are read: the given ones, or all that have both positions; and the
     /// other ones.
     fn joints(&self, given: &[String]) -> (Vec<String>, Vec<String>) {

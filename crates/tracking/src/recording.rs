@@ -30,8 +30,8 @@ pub struct TrackedRun {
     pub command: Vec<f64>,
     /// Actual positions, row-major K x n, rad.
     pub actual: Vec<f64>,
-    /// SHA-256 of the files; of the rows, if a file has several recordings; or of the positions that
-    /// a log has in messages.
+    /// SHA-256 of the files; of the rows, if a file has several recordings; or of the positions
+    /// that a log has in messages.
     pub sha256: String,
 }
 

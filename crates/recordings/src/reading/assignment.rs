@@ -90,13 +90,11 @@ impl Finder<'_> {
         let mut notes = Vec::new();
         let joints = self.joints()?;
         let (q, others) = self.positions(&joints)?;
-        let is_chosen = self.options.robot.is_none() && !self.options.joints.is_empty();
-        if !others.is_empty() && !is_chosen {
-            let why = match self.options.robot {
-                Some(_) => "the robot has no joint for",
-                None => "there is no command of",
-            };
+        let is_of_robot = self.options.robot.is_some();
+        if !others.is_empty() && (is_of_robot || self.options.joints.is_empty()) {
             let others = listed(others.iter().map(|column| column.text.as_str()));
+            let why =
+                if is_of_robot { "the robot has no joint for" } else { "there is no command of" };
             notes.push(format!("{why} {others}, which are not used"));
         }
         let find = |quantity, origins: &[Origin]| self.find(quantity, origins, &joints);
@@ -104,7 +102,8 @@ impl Finder<'_> {
         let qd = find(Quantity::Velocity, &measured)?.map(|(columns, _)| columns);
         let temperatures = find(Quantity::Temperature, &measured).ok().flatten();
         let temperatures = temperatures.map(|(columns, _)| columns);
-        let command = self.wants_commands().then(|| self.commands(&joints)).transpose()?;
+        let is_command = self.options.wanted == Wanted::Commands;
+        let command = is_command.then(|| self.commands(&joints)).transpose()?;
         let tau = if self.options.wanted.has_torques() { self.torques(&joints)? } else { None };
         let mut out = Assignment {
             time,
@@ -119,10 +118,6 @@ impl Finder<'_> {
         };
         out.unused = self.unused(&out);
         Ok(out)
-    }
-
-    fn wants_commands(&self) -> bool {
-        self.options.wanted == Wanted::Commands
     }
 
     /// Returns the columns of a quantity from the first of some origins that has any.
@@ -178,10 +173,8 @@ impl Finder<'_> {
         let found = by_pattern(&self.columns, pattern, self.options.columns.first);
         let count = joints.names.len();
         if self.options.robot.is_none() && count > 0 && count < found.len() {
-            return match joints.matched(&found) {
-                Ok((chosen, _)) => Ok(Some(chosen)),
-                Err(mismatch) => Err(self.mismatch(Quantity::Position, mismatch, &found, joints)),
-            };
+            let refused = |of| self.mismatch(Quantity::Position, of, &found, joints);
+            return joints.matched(&found).map(|(chosen, _)| Some(chosen)).map_err(refused);
         }
         if found.is_empty() || (count > 0 && found.len() != count) {
             let problem = format!(
@@ -219,8 +212,9 @@ impl Finder<'_> {
             _ => column.name.joint.join("_"),
         };
         let mut joints = Joints { names: found.iter().map(name).collect(), places: vec![], first };
-        let commands = self.of(Quantity::Position, Origin::Target);
-        joints.choose(self.options.joints, Some(&commands[..]).filter(|_| self.wants_commands()));
+        let is_command = self.options.wanted == Wanted::Commands;
+        let commands = is_command.then(|| self.of(Quantity::Position, Origin::Target));
+        joints.choose(self.options.joints, commands.as_deref());
         Ok(joints)
     }
 
