@@ -27,7 +27,10 @@ pub(super) fn content(path: &Path) -> Result<Content, Vec<Defect>> {
     if !bytes.starts_with(MAGIC) {
         return Ok(Content { text: bytes, digest, notes: vec![] });
     }
-    let (text, notes) = text_of(path, bytes).map_err(|problem| {
+    // The decoders of the library panic at some damaged files.
+    let read = std::panic::catch_unwind(|| text_of(path, bytes).map_err(|of| of.to_string()));
+    let read = read.unwrap_or_else(|_| Err("it is damaged".into()));
+    let (text, notes) = read.map_err(|problem| {
         refused(format!("the Parquet file cannot be read: {problem}"), "write it again")
     })?;
     Ok(Content { text, digest, notes })

@@ -92,9 +92,9 @@ pub fn read_logged_runs(
         dialect.line += part.skipped;
         let (texts, dialects, notes) = (vec![part.text], vec![dialect], log.notes.clone());
         let logged = LogText { files, texts, dialects, digest, notes }.logged(options)?;
-        Ok((Some(part.run), logged))
+        Ok::<_, Vec<Defect>>((Some(part.run), logged))
     };
-    let runs: Vec<_> = parts.into_iter().map(read).collect::<Result<_, _>>()?;
+    let runs: Vec<(_, Logged)> = parts.into_iter().map(read).collect::<Result<_, _>>()?;
     let units = |(_, logged): &(Option<String>, Logged)| {
         logged.understood.as_ref().map(|of| (of.time_unit, of.angle_units))
     };

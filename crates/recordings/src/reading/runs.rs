@@ -7,8 +7,9 @@ const RUNS: [&str; 3] = ["run", "episode", "episode_index"];
 
 /// Returns the column that tells the recordings of a file apart.
 pub(super) fn run_column(dialect: &Dialect) -> Option<usize> {
-    let without_unit = |name: &String| name.split(['[', '(']).next().unwrap_or(name).trim();
-    dialect.names.iter().position(|name| RUNS.contains(&without_unit(name)))
+    let is_run =
+        |name: &String| RUNS.contains(&name.split(['[', '(']).next().unwrap_or_default().trim());
+    dialect.names.iter().position(is_run)
 }
 
 /// The rows of one recording among others.

@@ -109,14 +109,15 @@ fn a_folder_of_lerobot_has_a_recording_for_each_episode() {
     let joints = ["lift".to_string()];
     let runs = read_logged_runs(&files, &options(&columns, &joints)).unwrap();
     assert_eq!(runs[1].1.command, [1.5, 1.6, 1.7].map(|value: f32| f64::from(value)));
-    assert_eq!(runs[1].1.notes, [""; 0]);
+    let [note] = &runs[1].1.notes[..] else { panic!("{:?}", runs[1].1.notes) };
+    assert!(note.contains("next.images have") && note.contains("are left out"), "{note}");
     // Without their description, values of lists have numbers; a note names what cannot be read.
     let info = folder.path().join("meta/info.json");
     std::fs::write(&info, "{\"features\": {").unwrap();
     let pattern: ColumnSettings = "r=action_{},q=observation.state_{},time_unit=s".parse().unwrap();
     let runs = read_logged_runs(&files, &options(&pattern, &[])).unwrap();
     assert_eq!(runs[0].1.command.len(), 6);
-    let note = &runs[0].1.notes[0];
+    let note = &runs[0].1.notes[1];
     assert!(note.contains("info.json: EOF") && note.contains("have numbers"), "{note}");
     std::fs::remove_file(info).unwrap();
     let (seconds, second) = ("time_unit=s".parse().unwrap(), ["1".to_string()]);
